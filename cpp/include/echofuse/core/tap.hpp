@@ -10,25 +10,25 @@ namespace echofuse {
 /// The values are part of the recording and of the link: append, never renumber.
 enum class TapId : std::uint8_t {
   // node
-  kScan = 0,            ///< (n_samples,) integrated scan [count]
-  kEnvelope = 1,        ///< (n_samples,) amplitude envelope before alignment [count]
-  kDirectPath = 2,      ///< (3,) found [0/1], toa [sample], threshold [count]
-  kAlignment = 3,       ///< (2,) shift against the background [sample], correlation [1]
-  kAligned = 4,         ///< (n_samples,) what clutter removal works on: aligned envelope, or aligned scan [count]
-  kResidual = 5,        ///< (n_samples,) rectified amplitude after clutter removal [count]
-  kThreshold = 6,       ///< (n_samples,) detection threshold on the squared residual [count^2]
-  kDecisions = 7,       ///< (n_samples,) 0 or 1
-  kRangeClusters = 8,   ///< (n_clusters, 4) position [sample], weight, first, last sample
-  kDetections = 9,      ///< (n_detections, 2) delay [s], weight
+  kScan = 0,        ///< (n_samples,) integrated scan [count]
+  kEnvelope = 1,    ///< (n_samples,) amplitude envelope before alignment [count]
+  kDirectPath = 2,  ///< (3,) found [0/1], toa [sample], threshold [count]
+  kAlignment = 3,   ///< (2,) shift against the background [sample], correlation [1]
+  kAligned = 4,     ///< (n_samples,) what clutter removal works on: aligned envelope, or aligned scan [count]
+  kResidual = 5,    ///< (n_samples,) rectified amplitude after clutter removal [count]
+  kThreshold = 6,   ///< (n_samples,) detection threshold on the squared residual [count^2]
+  kDecisions = 7,   ///< (n_samples,) 0 or 1
+  kRangeClusters = 8,  ///< (n_clusters, 4) position [sample], weight, first, last sample
+  kDetections = 9,     ///< (n_detections, 2) delay [s], weight
   // hub
-  kFrame = 32,          ///< (n_detections, 3) node index, path length [m], weight
-  kSelected = 33,       ///< (n_measurements, 5) x [m], y [m], weight, residual, nodes
-  kPoints = 34,         ///< (n_points, 4) x [m], y [m], members, weight after two-dimensional clustering
-  kPredicted = 35,      ///< (n_particles, 5) x, vx, y, vy, weight before the update
-  kUpdated = 36,        ///< (n_particles, 5) after the update, newborn particles last
-  kResampled = 37,      ///< (n_particles, 5)
-  kPeaks = 38,          ///< (n_peaks, 5) x, y [m], vx, vy [m/s], mass
-  kTracks = 39,         ///< (n_tracks, 7) id, state, x, y [m], vx, vy [m/s], scans since the last update
+  kFrame = 32,      ///< (n_detections, 3) node index, path length [m], weight
+  kSelected = 33,   ///< (n_measurements, 5) x [m], y [m], weight, residual, nodes
+  kPoints = 34,     ///< (n_points, 4) x [m], y [m], members, weight after two-dimensional clustering
+  kPredicted = 35,  ///< (n_particles, 5) x, vx, y, vy, weight before the update
+  kUpdated = 36,    ///< (n_particles, 5) after the update, newborn particles last
+  kResampled = 37,  ///< (n_particles, 5)
+  kPeaks = 38,      ///< (n_peaks, 5) x, y [m], vx, vy [m/s], mass
+  kTracks = 39,     ///< (n_tracks, 7) id, state, x, y [m], vx, vy [m/s], scans since the last update
 };
 
 /// Receives one tap: `values` is only valid during the call.
