@@ -1,5 +1,3 @@
-#include <string>
-
 #include "common.hpp"
 #include "echofuse/core/limits.hpp"
 #include "echofuse/core/random.hpp"
