@@ -1,0 +1,1 @@
+"""Scenes, people, propagation and radar front-ends: raw data with ground truth."""
