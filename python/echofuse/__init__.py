@@ -1,4 +1,4 @@
-"""Find people with radars: the library that runs on nodes and hub, its reference, and the harness around both.
+"""Find people with radars: the library for nodes and hub, its reference, and the harness around both.
 
 Importing this package loads nothing heavy; import what you need from its modules.
 """

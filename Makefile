@@ -1,0 +1,75 @@
+# The front door. Everything lands in .venv, build/ and demo/.
+#   demo       build, run the case study of the sensor radar, write demo/report.html
+#   build      the Python package with its C++ core, as .venv/bin/echofuse
+#   test       everything: C++, Python, then C++ again under the sanitizers
+#   test-fast  C++ and the quick part of Python, under three minutes
+#   bench      C++ against the NumPy reference
+#   lint       what pre-commit checks
+#   stubs      python/echofuse/_core.pyi anew from the built core
+#   clean      all but .venv;  distclean: .venv too
+
+SHELL := /bin/bash
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# One thread a process: pytest runs as many processes as there are cores.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
+PYTHON := .venv/bin/python
+SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings python \
+             \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
+CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
+
+.PHONY: demo build test test-fast test-cpp bench lint stubs clean distclean
+
+demo: build
+	.venv/bin/echofuse run sensor-radar --out demo
+
+build: build/.installed
+
+# A plain install and not an editable one, so that what is run and tested is what a wheel holds. scikit-build-core keeps
+# its CMake tree in build/python and there is no build isolation, so a changed C++ file recompiles alone.
+build/.installed: $(SOURCES) | .venv/.setup-run
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps .
+	@touch $@
+
+.venv/.setup-%: pyproject.toml tools/setup
+	tools/setup $*
+
+# What a part adds to the environment is put into the one that `run` has made.
+.venv/.setup-test .venv/.setup-lint: .venv/.setup-run
+
+test-cpp: .venv/.setup-test
+	cmake --preset host >/dev/null
+	cmake --build --preset host
+	ctest --preset host
+
+test: build test-cpp
+	$(PYTHON) -m pytest -q -n auto
+	cmake --preset sanitize >/dev/null
+	cmake --build --preset sanitize
+	ctest --preset sanitize
+
+test-fast: build test-cpp
+	$(PYTHON) -m pytest -q -n auto -m 'not slow'
+
+bench: build
+	.venv/bin/echofuse bench
+
+lint: build .venv/.setup-lint
+	clang-format --dry-run -Werror $(CXX_FILES)
+	@! grep -rnE '#include <(Eigen/(Core|Dense|Eigen)|eigen3)' cpp tests bindings --include='*.[ch]pp' \
+	  | grep -v core/eigen.hpp || { echo 'include echofuse/core/eigen.hpp instead'; exit 1; }
+	ruff check .
+	ruff format --check .
+	mypy
+	tools/stubs --check
+
+stubs: build .venv/.setup-lint
+	tools/stubs
+
+clean:
+	rm -rf build demo .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find python tests -name __pycache__ -prune -exec rm -rf {} +
+
+distclean: clean
+	rm -rf .venv
