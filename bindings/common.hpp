@@ -95,7 +95,7 @@ struct FieldType {
     } else if constexpr (std::is_floating_point_v<F>) {
       return "float";
     } else {
-      const py::type type = py::type::of<F>();
+      const py::type type = py::type::of(py::cast(F{}));
       return py::cast<std::string>(type.attr("__module__")) + "." +
              py::cast<std::string>(type.attr("__qualname__"));
     }

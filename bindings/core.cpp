@@ -8,13 +8,12 @@ namespace {
 
 void bind_status(py::module_& m) {
   py::enum_<Status> status(m, "Status", "What a stage says of one call.");
-  status.value("OK", Status::kOk, "done, outputs complete")
-      .value("TRUNCATED", Status::kTruncated, "a capacity was reached; what the outputs hold is valid")
-      .value("NOT_CONFIGURED", Status::kNotConfigured, "configure() has not succeeded yet; outputs empty")
-      .value("INVALID_CONFIG", Status::kInvalidConfig, "impossible; the earlier configuration stays in force")
-      .value("INVALID_INPUT", Status::kInvalidInput, "the data cannot be used; outputs empty");
-  m.def(
-      "status_name", [](Status value) { return std::string(name(value)); }, py::arg("status"));
+  const auto add = [&status](Status value, const char* doc) { status.value(name(value), value, doc); };
+  add(Status::kOk, "done, outputs complete");
+  add(Status::kTruncated, "a capacity was reached: what the outputs hold is valid, something was left out");
+  add(Status::kNotConfigured, "configure() has not succeeded yet; outputs empty");
+  add(Status::kInvalidConfig, "the configuration is impossible; the earlier one stays in force");
+  add(Status::kInvalidInput, "the data cannot be used; outputs empty");
 }
 
 void bind_limits(py::module_& m) {

@@ -1,7 +1,7 @@
 """PCG-XSH-RR 64/32 (O'Neill, HMC-CS-2014-0905, 2014), the one source of randomness.
 
-Every number takes exactly one 32-bit draw. The stream is that of ``echofuse::Pcg32``: draws and uniforms to the last
-bit, normals as the inverse normal distribution in float64.
+Every number takes exactly one 32-bit draw. The stream is that of ``echofuse::Pcg32``: draws and uniforms
+to the last bit, normals as the inverse normal distribution in float64.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Pcg32:
         return (self.draws(n) >> np.uint32(8)) * 2.0**-24
 
     def normals(self, n: int) -> NDArray[np.float64]:
-        """Draw n standard normals, (n,): the inverse distribution in the middle of each of 2^24 equal steps."""
+        """Draw n standard normals, (n,): the inverse distribution in the middles of 2^24 equal steps."""
         steps = (self.draws(n) >> np.uint32(8)).astype(np.float64)
         return inverse_normal((steps - 2.0**23 + 0.5) * 2.0**-24)
 
