@@ -1,0 +1,17 @@
+"""One HDF5 layout in and out (`design.md` section 7), and importers of other people's recordings."""
+
+from echofuse.recording.model import NodeRecording, Outputs, PersonTruth, Pulse, Recording
+from echofuse.recording.reader import read
+from echofuse.recording.writer import RecordingWriter, frame_digest, write
+
+__all__ = [
+    "NodeRecording",
+    "Outputs",
+    "PersonTruth",
+    "Pulse",
+    "Recording",
+    "RecordingWriter",
+    "frame_digest",
+    "read",
+    "write",
+]

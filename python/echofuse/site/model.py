@@ -1,0 +1,81 @@
+"""A site in memory: where the nodes stand, what area they watch, and how the pipeline is configured."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+Point2 = tuple[float, float]
+Point3 = tuple[float, float, float]
+
+#: What `[pipeline]` may set: values, and tables of values by stage name.
+Settings = Mapping[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wall:
+    """The wall through which the radars look."""
+
+    thickness_m: float
+    relative_permittivity: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteNode:
+    """One receiver and the transmitter that it listens to: shared (bistatic) or its own (monostatic)."""
+
+    name: str
+    id: int
+    tx_position_m: Point3
+    rx_position_m: Point3
+    radar: str = ""  # what it is, for people
+    time_zero: str | None = None  # overrides [pipeline] time_zero for this node
+    delay_offset_s: float | None = None  # overrides [pipeline] delay_offset_s for this node
+    transmit_delay_s: float = 0.0  # how long after its nominal time the pulse leaves; importers subtract it
+
+    def settings(self) -> dict[str, Any]:
+        """What this node sets of its pipeline's configuration."""
+        own = {"time_zero": self.time_zero, "delay_offset_s": self.delay_offset_s}
+        return {key: value for key, value in own.items() if value is not None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruePath:
+    """What is known of a real walk: the path without times."""
+
+    path_m: tuple[Point2, ...]  # vertices of an open polyline
+    walking_scans: tuple[int, int] | None = None  # first and last scan of the walk; later the person stands
+
+
+@dataclass(frozen=True, kw_only=True)
+class Site:
+    """One site file. Lengths in metres, x and y in the plane of the floor."""
+
+    name: str
+    nodes: tuple[SiteNode, ...]
+    area: tuple[Point2, ...]  # vertices of the watched polygon
+    pipeline: str
+    settings: Settings = field(default_factory=dict)  # of [pipeline]; only what the file says, no defaults
+    wall: Wall | None = None
+    truth: TruePath | None = None
+
+    @property
+    def bounds_m(self) -> tuple[float, float, float, float]:
+        """The rectangle around the area: x_min, y_min, x_max, y_max."""
+        xs, ys = zip(*self.area, strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+    @property
+    def area_is_rectangle(self) -> bool:
+        """Whether the area is its own bounding rectangle."""
+        return self.area == rectangle(*self.bounds_m)
+
+    def to_toml(self) -> str:
+        """Return the text of a site file that loads as this site."""
+        from echofuse.site.toml_writer import site_to_toml
+
+        return site_to_toml(self)
+
+
+def rectangle(x_min: float, y_min: float, x_max: float, y_max: float) -> tuple[Point2, ...]:
+    """Return the vertices of a rectangle, anticlockwise from the lower left."""
+    return (x_min, y_min), (x_max, y_min), (x_max, y_max), (x_min, y_max)

@@ -1,0 +1,152 @@
+"""Checks and applies stage settings against the compiled configuration classes, whatever fields these have.
+
+Names, types and defaults all come from the classes: this module knows none.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol, cast
+
+import numpy as np
+
+from echofuse.site.tables import Problems, finite_number, suggestion
+
+__all__ = ["PIPELINES", "Config", "PipelineKind", "apply_settings", "check_settings"]
+
+#: What the recording or the nodes of the site say; a stage setting may not contradict them.
+MEASURED = frozenset(
+    {"node_id", "n_samples", "sample_rate_hz", "first_sample_s", "baseline_m", "nodes", "n_nodes", "area"}
+)
+
+
+class Config(Protocol):
+    """What every bound configuration class offers (`bindings/common.hpp`)."""
+
+    def fields(self) -> tuple[str, ...]:
+        """Return the names of all fields."""
+        ...
+
+    def invalid_field(self) -> str | None:
+        """Return the name of the first field with an impossible value."""
+        ...
+
+
+@dataclass(frozen=True)
+class PipelineKind:
+    """Which compiled classes configure a pipeline, and how many nodes it needs."""
+
+    node_config: str
+    hub_config: str
+    least_nodes: int
+
+    def default_configs(self) -> tuple[Config, Config]:
+        """Return the configurations of a node and of the hub, as C++ defaults them."""
+        from echofuse import _core
+
+        return getattr(_core, self.node_config)(), getattr(_core, self.hub_config)()
+
+
+PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarHubConfig", least_nodes=3)}
+
+
+def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], problems: Problems) -> None:
+    """Report every setting that no configuration knows, of a wrong type, or with an impossible value.
+
+    A key is looked up in `configs` in order: first the node's, then the hub's.
+    """
+    known = [field for config in configs for field in config.fields() if field not in MEASURED]
+    for key, value in settings.items():
+        where = f"pipeline.{key}"
+        owner = next((config for config in configs if key in config.fields()), None)
+        if owner is None:
+            problems.add(where, suggestion(key, known), "an unknown key")
+        else:
+            _set(owner, key, value, where, problems)
+    for config in configs:
+        _report_invalid(config, settings, "pipeline", problems)
+
+
+def apply_settings(config: Config, settings: Mapping[str, Any]) -> None:
+    """Set on `config` those checked settings that it has fields for; the others belong to another class."""
+    problems = Problems("pipeline")
+    for key, value in settings.items():
+        if key in config.fields():
+            _set(config, key, value, key, problems)
+    if problems.lines:
+        raise ValueError("\n".join(problems.lines))
+
+
+def _set(config: Config, key: str, value: Any, where: str, problems: Problems) -> None:
+    if key in MEASURED:
+        problems.add(where, "no such setting: the recording and the nodes of the site say it", value)
+        return
+    current = getattr(config, key)
+    if _is_config(current):
+        _set_stage(current, value, where, problems)
+        return
+    expected, converted = _converted(current, value)
+    if converted is not None:
+        try:
+            setattr(config, key, converted)
+            return
+        except (TypeError, ValueError, OverflowError):
+            expected += " that fits the field"
+    problems.add(where, expected, value)
+
+
+def _set_stage(config: Config, values: Any, where: str, problems: Problems) -> None:
+    if not isinstance(values, Mapping):
+        problems.add(where, f"a table [{where}]", values)
+        return
+    for key, value in values.items():
+        if key in config.fields():
+            _set(config, key, value, f"{where}.{key}", problems)
+        else:
+            settable = [field for field in config.fields() if field not in MEASURED]
+            problems.add(f"{where}.{key}", suggestion(key, settable), "an unknown key")
+    _report_invalid(config, values, where, problems)
+
+
+def _report_invalid(config: Config, values: Mapping[str, Any], where: str, problems: Problems) -> None:
+    """Report the first impossible value, if the file sets it (others are measured, and not known here)."""
+    bad = config.invalid_field()
+    field = (bad or "").split(".")[0].split("[")[0]
+    if field in values and not isinstance(values[field], Mapping):
+        documentation = getattr(type(config), field).__doc__
+        problems.add(
+            f"{where}.{field}", f"a possible value ({documentation or 'see the stage'})", values[field]
+        )
+
+
+def _converted(current: Any, value: Any) -> tuple[str, Any]:
+    """Return what a field holding `current` expects, and `value` as such or None."""
+    members = getattr(type(current), "__members__", None)
+    if members is not None:
+        fits = isinstance(value, str) and value in members
+        return f"one of {', '.join(members)}", members[value] if fits else None
+    if isinstance(current, bool):
+        return "true or false", value if isinstance(value, bool) else None
+    if isinstance(current, int):
+        fits = isinstance(value, int) and not isinstance(value, bool)
+        return "an integer", value if fits else None
+    if isinstance(current, float):
+        fits = finite_number(value) and abs(value) <= float(np.finfo(np.float32).max)
+        return "a number", float(value) if fits else None
+    if isinstance(current, Sequence):
+        return _converted_list(current, value)
+    return "nothing: this field cannot be set in a site file", None
+
+
+def _converted_list(current: Sequence[Any], value: Any) -> tuple[str, Any]:
+    if not isinstance(value, list) or len(value) != len(current):
+        return f"a list of {len(current)} values", None
+    pairs = [_converted(have, want) for have, want in zip(current, value, strict=True)]
+    converted = [item for _, item in pairs]
+    expected = f"a list of {len(current)}, each {pairs[0][0]}" if pairs else "an empty list"
+    return expected, None if any(item is None for item in converted) else converted
+
+
+def _is_config(value: Any) -> bool:
+    return callable(getattr(value, "invalid_field", None)) and callable(
+        getattr(cast(Config, value), "fields", None)
+    )
