@@ -1,0 +1,1 @@
+"""How good tracks are: errors against the truth, OSPA, and the bounds that nothing can beat."""
