@@ -137,7 +137,7 @@ def _is_ordered(corners_m: Array, first: Surface, second: Surface) -> bool:
 
 
 def shadow(corners_m: Array, obstacles: list[Obstacle], wavelength_m: float) -> Array:
-    """Amplitude factor (n,) of paths with corners (n, k, 3): 1 in the clear, an edge as soft as the Fresnel zone.
+    """Amplitude factor (n,) of paths with corners (n, k, 3): 1 in the clear, edges as soft as Fresnel zones.
 
     Of each body the segment that it covers most counts; bodies multiply.
     """

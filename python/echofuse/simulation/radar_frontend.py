@@ -71,7 +71,7 @@ class RadarFrontend:
         return np.asarray(np.rint(counts) if self.radio.quantise else counts, dtype=np.float32)
 
     def _noise_spectrum(self) -> Array:
-        """(n_bins,) amplitude per unit normal: a band-pass with raised-cosine edges and the budget's power."""
+        """(n_bins,) amplitude per unit normal: a band-pass of the budget's power, raised-cosine edges."""
         half = self.radio.noise_bandwidth_hz / 2.0
         edge = np.abs(self._frequency_hz - self.pulse.centre_hz) - half
         roll = 2.0 * half * NOISE_EDGE

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from echofuse.simulation.radio import SPEED_OF_LIGHT_MPS, Pulse, Radio
 
 Point = tuple[float, float, float]
@@ -149,6 +151,32 @@ CASE_STUDY_FURNITURE = tuple(
 )
 
 
+ROUGH_WALL_SCATTERERS = 80
+ROUGH_WALL_RCS_M2 = 0.02  # mean, exponential: sockets, frames, joints
+ROUGH_WALL_SEED = 410  # the room is the same in every run
+
+
+def rough_walls(room: Room, count: int, mean_rcs_m2: float, seed: int) -> tuple[Furniture, ...]:
+    """Weak point scatterers all over the walls: the diffuse part of the empty room's echo."""
+    rng = np.random.default_rng(seed)
+    (left, front, floor), (right, back, ceiling) = room.lower_m, room.upper_m
+    width, depth = right - left, back - front
+    points = []
+    for along, height, rcs in zip(
+        rng.uniform(0.0, 2.0 * (width + depth), count),
+        rng.uniform(floor + 0.1, ceiling - 0.1, count),
+        rng.exponential(mean_rcs_m2, count),
+        strict=True,
+    ):
+        if along < 2.0 * width:
+            at = (left + along % width, front if along < width else back, height)
+        else:
+            rest = along - 2.0 * width
+            at = (left if rest < depth else right, front + rest % depth, height)
+        points.append(Furniture(position_m=at, rcs_m2=float(rcs)))
+    return tuple(points)
+
+
 def sensor_radar_scene(*, monostatic: bool = False) -> Scene:
     """The case study: 11.5 m x 6 m, one Tx and six Rx at the sides, or six monostatic nodes there."""
     nodes = []
@@ -164,5 +192,6 @@ def sensor_radar_scene(*, monostatic: bool = False) -> Scene:
         area_upper_m=(11.5, 6.0),
         room=CASE_STUDY_ROOM,
         nodes=tuple(nodes),
-        furniture=CASE_STUDY_FURNITURE,
+        furniture=CASE_STUDY_FURNITURE
+        + rough_walls(CASE_STUDY_ROOM, ROUGH_WALL_SCATTERERS, ROUGH_WALL_RCS_M2, ROUGH_WALL_SEED),
     )
