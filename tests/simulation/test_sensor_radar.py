@@ -45,13 +45,13 @@ def test_a_run_has_the_shapes_of_a_recording() -> None:
     )
     assert heard == [(1, 3), (2, 3), (3, 3)]
     assert len(run.nodes) == 6
-    assert [person.person_id for person in run.people] == [1, 2]
+    assert [person.id for person in run.truth] == ["1", "2"]
     for node in run.nodes:
         assert node.scans.shape == (3, 1920)
         assert node.reference.shape == (2, 1920)
         assert node.scans.dtype == node.reference.dtype == np.float32
         np.testing.assert_allclose(node.time_s, [0.0, 0.1, 0.2])
-    truth = run.people[0]
+    truth = run.truth[0]
     np.testing.assert_allclose(truth.position_m[:, 0], [10.3, 10.15, 10.0])
     assert truth.position_m.shape == (3, 3)
     assert n_frames(SCENE, 6.1) == 61

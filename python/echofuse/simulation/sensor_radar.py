@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from echofuse.recording import NodeRecording, PersonTruth, Pulse, Recording
 from echofuse.simulation.people import Body, Person
 from echofuse.simulation.propagation import (
     Obstacle,
@@ -43,43 +45,6 @@ class SimulatedFrame:
     index: int
     time_s: NDArray[np.float64]  # (n_nodes,) when each node's scan was taken
     scans: NDArray[np.float32]  # (n_nodes, n_samples) [count]
-
-
-@dataclass(frozen=True, kw_only=True)
-class SimulatedNode:
-    """What one node recorded."""
-
-    name: str
-    node_id: int
-    sample_rate_hz: float
-    first_sample_s: float  # delay of sample 0 after transmission
-    tx_position_m: NDArray[np.float64]  # (3,)
-    rx_position_m: NDArray[np.float64]  # (3,)
-    pulse: dict[str, str | float]  # kind, centre_hz, bandwidth_hz
-    time_s: NDArray[np.float64]  # (n,)
-    scans: NDArray[np.float32]  # (n, n_samples) [count]
-    reference: NDArray[np.float32]  # (n_reference, n_samples) [count] of the empty room
-
-
-@dataclass(frozen=True, kw_only=True)
-class PersonTruth:
-    """Where one person really was."""
-
-    person_id: int
-    time_s: NDArray[np.float64]  # (n,)
-    position_m: NDArray[np.float64]  # (n, 3) middle of the torso
-    motion: str
-    height_m: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class SimulatedRecording:
-    """A whole run."""
-
-    pipeline: str
-    seed: int
-    nodes: tuple[SimulatedNode, ...]
-    people: tuple[PersonTruth, ...]
 
 
 class _Listener:
@@ -179,7 +144,7 @@ def simulate(
     seed: int = 0,
     n_reference: int = REFERENCE_SCANS,
     progress: Callable[[int, int], None] | None = None,
-) -> SimulatedRecording:
+) -> Recording:
     """A whole run in memory; `progress` hears (frames done, frames in all)."""
     simulation = SensorRadarSimulation(scene, people, seed=seed)
     total, radio, pulse = n_frames(scene, duration_s), scene.radio, scene.pulse
@@ -191,14 +156,14 @@ def simulate(
         if progress is not None:
             progress(index + 1, total)
     nodes = tuple(
-        SimulatedNode(
+        NodeRecording(
             name=node.name,
             node_id=node.node_id,
             sample_rate_hz=radio.sample_rate_hz,
             first_sample_s=scene.first_sample_s(node),
             tx_position_m=np.array(node.tx_position_m),
             rx_position_m=np.array(node.rx_position_m),
-            pulse={"kind": pulse.kind, "centre_hz": pulse.centre_hz, "bandwidth_hz": pulse.bandwidth_hz},
+            pulse=Pulse(kind=pulse.kind, centre_hz=pulse.centre_hz, bandwidth_hz=pulse.bandwidth_hz),
             time_s=time_s[which],
             scans=scans[which],
             reference=simulation.reference(which, n_reference),
@@ -207,13 +172,19 @@ def simulate(
     )
     frame_time_s: NDArray[np.float64] = np.arange(total, dtype=np.float64) * scene.scan_period_s
     truths = tuple(person_truth(person, frame_time_s) for person in people)
-    return SimulatedRecording(pipeline="sensor_radar", seed=seed, nodes=nodes, people=truths)
+    return Recording(
+        pipeline="sensor_radar",
+        created=datetime.now(UTC).isoformat(timespec="seconds"),
+        site_toml="",
+        nodes=nodes,
+        truth=truths,
+    )
 
 
 def person_truth(person: Person, time_s: NDArray[np.float64]) -> PersonTruth:
     """A person's truth at times (n,)."""
     return PersonTruth(
-        person_id=person.person_id,
+        id=str(person.person_id),
         time_s=time_s,
         position_m=person.position_m(time_s),
         motion=person.motion,
