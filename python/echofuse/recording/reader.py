@@ -98,7 +98,7 @@ class _Reader:
         group = self.group(key)
         scans = self.scans(f"{key}/scans")
         # The attributes belong to the node; recordings that have them on its scans are understood as well.
-        source = group if "node_id" in group.attrs else group["scans"]
+        source = group["scans"] if "node_id" in group["scans"].attrs else group
         time_s = self.array(f"{key}/time_s", "f", (None,), "(n_scans,) float64")
         # A writer that crashed may have left scans whose times it had not written yet: these do not count.
         n_scans = len(time_s)
