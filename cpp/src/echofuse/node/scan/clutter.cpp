@@ -1,0 +1,97 @@
+#include "echofuse/node/scan/clutter.hpp"
+
+#include <algorithm>
+
+namespace echofuse::node {
+
+const char* invalid_field(const ClutterConfig& config) {
+  if (config.method > ClutterMethod::kFrameDifference) return "method";
+  if (!(config.averaging_factor > 0.0f && config.averaging_factor < 1.0f)) return "averaging_factor";
+  if (config.learning_scans < 1) return "learning_scans";
+  if (config.difference_lag_scans < 1) return "difference_lag_scans";
+  return nullptr;
+}
+
+bool uses_envelope(ClutterMethod method) { return method == ClutterMethod::kEmptyRoomEnvelope; }
+
+Status ClutterFilter::configure(const ClutterConfig& config, int n_samples) {
+  if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
+  if (n_samples < 1 || n_samples > static_cast<int>(kMaxSamplesPerScan)) return Status::kInvalidConfig;
+  const auto most_scans = static_cast<int>(kMaxClutterMemory) / n_samples;
+  if (config.method == ClutterMethod::kFrameDifference && config.difference_lag_scans > most_scans)
+    return Status::kInvalidConfig;
+  config_ = config;
+  n_samples_ = static_cast<std::size_t>(n_samples);
+  reset();
+  return Status::kOk;
+}
+
+void ClutterFilter::reset() {
+  n_averaged_ = 0;
+  n_empty_room_ = 0;
+  oldest_ = 0;
+  memory_.fill(0.0f);
+}
+
+bool ClutterFilter::ready() const {
+  if (n_samples_ == 0) return false;
+  if (config_.method == ClutterMethod::kFrameDifference) return n_averaged_ >= config_.difference_lag_scans;
+  return n_empty_room_ > 0 || n_averaged_ >= config_.learning_scans;
+}
+
+Status ClutterFilter::add_empty_room(Span<const float> samples) {
+  if (n_samples_ == 0) return Status::kNotConfigured;
+  if (samples.size() != n_samples_) return Status::kInvalidInput;
+  if (config_.method == ClutterMethod::kFrameDifference) return Status::kOk;
+  if (n_empty_room_ == 0) memory_.fill(0.0f);
+  ++n_empty_room_;
+  learn(samples, 1.0f / static_cast<float>(n_empty_room_));
+  n_averaged_ = std::max(config_.learning_scans, n_empty_room_);
+  return Status::kOk;
+}
+
+Status ClutterFilter::process(Span<const float> samples, Span<float> residual) {
+  if (n_samples_ == 0) return Status::kNotConfigured;
+  if (samples.size() != n_samples_ || residual.size() != n_samples_) return Status::kInvalidInput;
+  const bool was_ready = ready();
+  if (config_.method == ClutterMethod::kFrameDifference) {
+    difference(samples, residual, was_ready);
+    return Status::kOk;
+  }
+  const bool follows = config_.method == ClutterMethod::kExponentialAverage;
+  const bool learns = follows || !was_ready;
+  const float mean_weight = 1.0f / static_cast<float>(n_averaged_ + 1);
+  float weight = 0.0f;
+  if (learns) {
+    weight = follows ? std::max(1.0f - config_.averaging_factor, mean_weight) : mean_weight;
+    n_averaged_ = std::min(n_averaged_ + 1, 1 << 20);
+  }
+  for (std::size_t k = 0; k < n_samples_; ++k) {
+    const float change = samples[k] - memory_[k];
+    memory_[k] += weight * change;
+    residual[k] = was_ready ? change : 0.0f;
+  }
+  return Status::kOk;
+}
+
+void ClutterFilter::learn(Span<const float> samples, float weight) {
+  for (std::size_t k = 0; k < n_samples_; ++k) memory_[k] += weight * (samples[k] - memory_[k]);
+}
+
+/// memory_ is a ring of difference_lag_scans scans; the new one takes the oldest one's place.
+void ClutterFilter::difference(Span<const float> samples, Span<float> residual, bool subtract) {
+  float* oldest = memory_.data() + oldest_ * n_samples_;
+  for (std::size_t k = 0; k < n_samples_; ++k) {
+    const float now = samples[k];
+    residual[k] = subtract ? now - oldest[k] : 0.0f;
+    oldest[k] = now;
+  }
+  oldest_ = (oldest_ + 1) % static_cast<std::size_t>(config_.difference_lag_scans);
+  n_averaged_ = std::min(n_averaged_ + 1, config_.difference_lag_scans);
+}
+
+void rectify(Span<float> samples) {
+  for (float& sample : samples) sample = std::max(0.0f, sample);
+}
+
+}  // namespace echofuse::node

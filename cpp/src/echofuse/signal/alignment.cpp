@@ -1,0 +1,179 @@
+#include "echofuse/signal/alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echofuse/core/constants.hpp"
+
+namespace echofuse::signal {
+namespace {
+
+constexpr int kShiftsAtOnce = 4;       ///< one load of the reference serves four shifts
+constexpr int kProductsPerBlock = 64;  ///< partial sums keep the rounding error of a float sum small
+
+/// Sums of products of one range of the reference with the envelope at `kShifts` neighbouring shifts.
+template <int kShifts>
+void add_products(const float* envelope, const float* reference, int count, float* sums) {
+  for (int begin = 0; begin < count; begin += kProductsPerBlock) {
+    const int end = std::min(count, begin + kProductsPerBlock);
+    float block[kShifts] = {};
+    for (int k = begin; k < end; ++k) {
+      const float value = reference[k];
+      for (int i = 0; i < kShifts; ++i) block[i] += value * envelope[k + i];
+    }
+    for (int i = 0; i < kShifts; ++i) sums[i] += block[i];
+  }
+}
+
+/// The reference's samples [first, last) whose partner at `shift` lies inside the envelope.
+struct Range {
+  int first;
+  int last;
+};
+Range inside(Range range, int shift, int n_samples) {
+  return {std::max(range.first, -shift), std::min(range.last, n_samples - shift)};
+}
+
+/// The products of the reference's samples [range) with the envelope `shift` later, added to sum.
+void add_range(Span<const float> envelope, Span<const float> reference, Range range, int shift, float* sum) {
+  if (range.first >= range.last) return;
+  add_products<1>(envelope.data() + (range.first + shift), reference.data() + range.first,
+                  range.last - range.first, sum);
+}
+
+float energy(Span<const float> values, Range range) {
+  float sum = 0.0f;
+  add_range(values, values, range, 0, &sum);
+  return sum;
+}
+
+/// products[i] = correlation sum at shift lowest + i.
+void correlate(Span<const float> envelope, Span<const float> reference, Range range, int lowest, int n_shifts,
+               float* products) {
+  const int n_samples = static_cast<int>(envelope.size());
+  std::fill(products, products + n_shifts, 0.0f);
+  int i = 0;
+  for (; i + kShiftsAtOnce <= n_shifts; i += kShiftsAtOnce) {
+    const int shift = lowest + i;
+    // Where all shifts have partners at once; then, for each, the few products at the ends.
+    const Range common{inside(range, shift, n_samples).first,
+                       inside(range, shift + kShiftsAtOnce - 1, n_samples).last};
+    if (common.first >= common.last) break;
+    add_products<kShiftsAtOnce>(envelope.data() + (common.first + shift), reference.data() + common.first,
+                                common.last - common.first, products + i);
+    for (int j = 0; j < kShiftsAtOnce; ++j) {
+      const Range own = inside(range, shift + j, n_samples);
+      add_range(envelope, reference, {own.first, common.first}, shift + j, products + i + j);
+      add_range(envelope, reference, {common.last, own.last}, shift + j, products + i + j);
+    }
+  }
+  for (; i < n_shifts; ++i)
+    add_range(envelope, reference, inside(range, lowest + i, n_samples), lowest + i, products + i);
+}
+
+}  // namespace
+
+const char* invalid_field(const AlignmentConfig& config) {
+  if (config.method != AlignmentMethod::kSubSample && config.method != AlignmentMethod::kInteger &&
+      config.method != AlignmentMethod::kNone)
+    return "method";
+  if (config.max_shift_samples < 1 || config.max_shift_samples > static_cast<int>(kMaxAlignmentShift))
+    return "max_shift_samples";
+  if (config.interpolator_half_length_samples < 2 ||
+      config.interpolator_half_length_samples > static_cast<int>(kMaxInterpolatorHalfLength))
+    return "interpolator_half_length_samples";
+  return nullptr;
+}
+
+Status Aligner::configure(const AlignmentConfig& config) {
+  if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
+  config_ = config;
+  const int half_length = config.interpolator_half_length_samples;
+  for (int j = -half_length + 1; j <= half_length; ++j) {
+    const float angle = kPi * static_cast<float>(j) / static_cast<float>(half_length);
+    window_cosine_[static_cast<std::size_t>(j + half_length - 1)] = std::cos(angle);
+    window_sine_[static_cast<std::size_t>(j + half_length - 1)] = std::sin(angle);
+  }
+  configured_ = true;
+  return Status::kOk;
+}
+
+Status Aligner::estimate(Span<const float> envelope, Span<const float> reference, int coarse_shift, int first,
+                         int last, Alignment& alignment) const {
+  alignment = Alignment{};
+  if (!configured_) return Status::kNotConfigured;
+  const int n_samples = static_cast<int>(envelope.size());
+  if (envelope.size() != reference.size() || first < 0 || last > n_samples || first >= last)
+    return Status::kInvalidInput;
+  if (coarse_shift < -n_samples || coarse_shift > n_samples) return Status::kInvalidInput;
+  const bool searches = config_.method != AlignmentMethod::kNone;
+  const int reach = searches ? config_.max_shift_samples : 0;
+  const int lowest = (searches ? coarse_shift : 0) - reach;
+  const int n_shifts = 2 * reach + 1;
+
+  float products[2 * kMaxAlignmentShift + 1];
+  correlate(envelope, reference, {first, last}, lowest, n_shifts, products);
+  const int best = static_cast<int>(std::max_element(products, products + n_shifts) - products);
+  const int shift = lowest + best;
+  const Range matched = inside({first, last}, shift, n_samples);
+  const float norm = std::sqrt(energy(reference, {first, last})) *
+                     std::sqrt(energy(envelope, {matched.first + shift, matched.last + shift}));
+  if (norm > 0.0f) alignment.correlation = products[best] / norm;
+
+  alignment.shift_samples = static_cast<float>(shift);
+  if (config_.method == AlignmentMethod::kSubSample && best > 0 && best < n_shifts - 1) {
+    const float curvature = products[best - 1] - 2.0f * products[best] + products[best + 1];
+    if (curvature < 0.0f)
+      alignment.shift_samples += 0.5f * (products[best - 1] - products[best + 1]) / curvature;
+  }
+  return Status::kOk;
+}
+
+/// sinc(j - fraction) is proportional to (-1)^j / (fraction - j), and the sum of the taps is made 1.
+void Aligner::interpolator(float fraction, Taps& taps) const {
+  const int half_length = config_.interpolator_half_length_samples;
+  const float angle = kPi * fraction / static_cast<float>(half_length);
+  const float cosine = std::cos(angle);
+  const float sine = std::sin(angle);
+  float sum = 0.0f;
+  for (int j = -half_length + 1; j <= half_length; ++j) {
+    const auto i = static_cast<std::size_t>(j + half_length - 1);
+    const float c = window_cosine_[i] * cosine + window_sine_[i] * sine;
+    const float window = 0.42f + 0.5f * c + 0.08f * (2.0f * c * c - 1.0f);
+    const float sign = j % 2 == 0 ? 1.0f : -1.0f;
+    taps[i] = sign * window / (fraction - static_cast<float>(j));
+    sum += taps[i];
+  }
+  const float scale = 1.0f / sum;
+  for (int i = 0; i < 2 * half_length; ++i) taps[static_cast<std::size_t>(i)] *= scale;
+}
+
+Status Aligner::shift(Span<const float> input, float shift_samples, Span<float> output) const {
+  if (!configured_) return Status::kNotConfigured;
+  const int n_samples = static_cast<int>(input.size());
+  if (input.size() != output.size() || !(std::abs(shift_samples) <= static_cast<float>(n_samples)))
+    return Status::kInvalidInput;
+  const float floor = std::floor(shift_samples);
+  const float fraction = shift_samples - floor;
+  const int whole = static_cast<int>(floor) + (fraction < 1.0f ? 0 : 1);  // 1 - 1e-9 is 1 in float32
+  Taps taps{};
+  int n_taps = 1;
+  int offset = whole;  // of the first tap's source from the output's sample
+  taps[0] = 1.0f;
+  if (fraction > 0.0f && fraction < 1.0f) {
+    interpolator(fraction, taps);
+    n_taps = 2 * config_.interpolator_half_length_samples;
+    offset = whole - config_.interpolator_half_length_samples + 1;
+  }
+  for (int k = 0; k < n_samples; ++k) {
+    const int begin = std::max(0, -(k + offset));
+    const int end = std::min(n_taps, n_samples - (k + offset));
+    float sum = 0.0f;
+    for (int i = begin; i < end; ++i)
+      sum += taps[static_cast<std::size_t>(i)] * input[static_cast<std::size_t>(k + offset + i)];
+    output[static_cast<std::size_t>(k)] = sum;
+  }
+  return Status::kOk;
+}
+
+}  // namespace echofuse::signal

@@ -1,0 +1,1 @@
+"""References of what runs beside a radar: float64, from the formulas."""

@@ -1,0 +1,1 @@
+"""References of the stages that turn one raw scan into detections."""

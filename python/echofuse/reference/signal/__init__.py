@@ -1,0 +1,1 @@
+"""References of the stages in `signal/`: float64, from the formulas."""
