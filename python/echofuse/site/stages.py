@@ -52,28 +52,39 @@ PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarH
 def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], problems: Problems) -> None:
     """Report every setting that no configuration knows, of a wrong type, or with an impossible value.
 
-    A key is looked up in `configs` in order: first the node's, then the hub's.
+    A key is looked up in `configs` in order: first the node's, then the hub's. What is right is set on them.
     """
     known = [field for config in configs for field in config.fields() if field not in MEASURED]
+    own: list[dict[str, Any]] = [{} for _ in configs]
     for key, value in settings.items():
-        where = f"pipeline.{key}"
-        owner = next((config for config in configs if key in config.fields()), None)
+        owner = next((index for index, config in enumerate(configs) if key in config.fields()), None)
         if owner is None:
-            problems.add(where, suggestion(key, known), "an unknown key")
+            problems.add(f"pipeline.{key}", suggestion(key, known), "an unknown key")
         else:
-            _set(owner, key, value, where, problems)
-    for config in configs:
-        _report_invalid(config, settings, "pipeline", problems)
+            own[owner][key] = value
+    for config, values in zip(configs, own, strict=True):
+        _set_all(config, values, "pipeline", problems)
 
 
 def apply_settings(config: Config, settings: Mapping[str, Any]) -> None:
     """Set on `config` those checked settings that it has fields for; the others belong to another class."""
     problems = Problems("pipeline")
-    for key, value in settings.items():
-        if key in config.fields():
-            _set(config, key, value, key, problems)
+    _set_all(config, {key: value for key, value in settings.items() if key in config.fields()}, "", problems)
     if problems.lines:
         raise ValueError("\n".join(problems.lines))
+
+
+def _set_all(config: Config, values: Mapping[str, Any], where: str, problems: Problems) -> None:
+    """Set known fields, and put back with a problem those that make the configuration impossible."""
+    before = {key: getattr(config, key) for key in values if key not in MEASURED}
+    for key, value in values.items():
+        _set(config, key, value, f"{where}.{key}".lstrip("."), problems)
+    bad = config.invalid_field()
+    while bad in before and not _is_config(before[bad]):
+        meaning = _documentation(config, bad)
+        problems.add(f"{where}.{bad}".lstrip("."), f"a possible value ({meaning})", values[bad])
+        setattr(config, bad, before.pop(bad))
+        bad = config.invalid_field()
 
 
 def _set(config: Config, key: str, value: Any, where: str, problems: Problems) -> None:
@@ -98,24 +109,18 @@ def _set_stage(config: Config, values: Any, where: str, problems: Problems) -> N
     if not isinstance(values, Mapping):
         problems.add(where, f"a table [{where}]", values)
         return
-    for key, value in values.items():
-        if key in config.fields():
-            _set(config, key, value, f"{where}.{key}", problems)
-        else:
-            settable = [field for field in config.fields() if field not in MEASURED]
+    settable = [field for field in config.fields() if field not in MEASURED]
+    for key in values:
+        if key not in config.fields():
             problems.add(f"{where}.{key}", suggestion(key, settable), "an unknown key")
-    _report_invalid(config, values, where, problems)
+    known = {key: value for key, value in values.items() if key in config.fields()}
+    _set_all(config, known, where, problems)
 
 
-def _report_invalid(config: Config, values: Mapping[str, Any], where: str, problems: Problems) -> None:
-    """Report the first impossible value, if the file sets it (others are measured, and not known here)."""
-    bad = config.invalid_field()
-    field = (bad or "").split(".")[0].split("[")[0]
-    if field in values and not isinstance(values[field], Mapping):
-        documentation = getattr(type(config), field).__doc__
-        problems.add(
-            f"{where}.{field}", f"a possible value ({documentation or 'see the stage'})", values[field]
-        )
+def _documentation(config: Config, field: str) -> str:
+    """Return what the binding says about a field: its unit and range."""
+    described = getattr(type(config), field, None)
+    return (described.__doc__ if described is not None else "") or "see the stage"
 
 
 def _converted(current: Any, value: Any) -> tuple[str, Any]:

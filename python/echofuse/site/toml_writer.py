@@ -49,7 +49,8 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=True)  # a JSON string without surrogates is a TOML basic string
+        # A JSON string is a TOML basic string, but for DEL.
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, Iterable):
         return "[" + ", ".join(_value(item) for item in value) + "]"
     return repr(value)
