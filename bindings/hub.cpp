@@ -1,7 +1,221 @@
 #include "common.hpp"
 
+#include <vector>
+
+#include "echofuse/hub/locate/ellipse_least_squares.hpp"
+#include "echofuse/hub/locate/site.hpp"
+#include "echofuse/hub/measure/measurement_selection.hpp"
+#include "echofuse/hub/measure/point_clusters.hpp"
+
 namespace echofuse::bindings {
 
-void bind_hub(py::module_& m) { (void)m; }
+namespace {
+
+using hub::Area;
+using hub::NodeSite;
+using hub::Point;
+
+void bind_site(py::module_& m) {
+  ConfigBinder<Point>(m, "Point", "A position in the plane.")
+      .field("x_m", &Point::x_m, "[m]")
+      .field("y_m", &Point::y_m, "[m]");
+  ConfigBinder<Area>(m, "Area", "A rectangle along the axes, edges included.")
+      .field("min_x_m", &Area::min_x_m, "[m]")
+      .field("min_y_m", &Area::min_y_m, "[m]")
+      .field("max_x_m", &Area::max_x_m, "[m]")
+      .field("max_y_m", &Area::max_y_m, "[m]");
+  ConfigBinder<NodeSite>(m, "NodeSite", "The foci of one node's ellipses; monostatic when both are in one place.")
+      .field("node_id", &NodeSite::node_id)
+      .field("tx", &NodeSite::tx, "[m]")
+      .field("rx", &NodeSite::rx, "[m]");
+  m.def(
+      "invalid_site",
+      [](const std::vector<NodeSite>& nodes, const Area& area) -> py::object {
+        const char* what = hub::invalid_site({nodes.data(), nodes.size()}, area);
+        if (what == nullptr) return py::none();
+        return py::str(what);
+      },
+      py::arg("nodes"), py::arg("area"), "\"n_nodes\", \"nodes\" or \"area\": what makes locating impossible; or None.");
+  m.def(
+      "path_length",
+      [](const Point& position, const Point& tx, const Point& rx, float body_radius_m) {
+        Point gradient;
+        const float path = hub::path_length(position, tx, rx, body_radius_m, &gradient);
+        return py::make_tuple(path, gradient.x_m, gradient.y_m);
+      },
+      py::arg("position"), py::arg("tx"), py::arg("rx"), py::arg("body_radius_m"),
+      "(path [m], its derivatives with respect to x and y).");
+}
+
+void bind_ellipse(py::module_& m) {
+  using hub::EllipseConfig;
+  using hub::EllipseFix;
+  using hub::EllipseLeastSquares;
+  using hub::RangeEllipse;
+  py::enum_<hub::EllipseRefinement>(m, "EllipseRefinement")
+      .value("gauss_newton", hub::EllipseRefinement::kGaussNewton)
+      .value("none", hub::EllipseRefinement::kNone);
+  ConfigBinder<EllipseConfig>(m, "EllipseConfig", "Intersection of ellipses (eqs. 16-23).")
+      .field("refinement", &EllipseConfig::refinement)
+      .field("max_iterations", &EllipseConfig::max_iterations, "of Gauss-Newton")
+      .field("max_step_m", &EllipseConfig::max_step_m, "[m]")
+      .field("body_radius_m", &EllipseConfig::body_radius_m, "[m]")
+      .field("robust_scale_m", &EllipseConfig::robust_scale_m, "[m] 0: all paths alike");
+  py::class_<EllipseFix>(m, "EllipseFix")
+      .def_property_readonly("position_m",
+                             [](const EllipseFix& fix) { return py::make_tuple(fix.position.x_m, fix.position.y_m); })
+      .def_readonly("range_residual_m", &EllipseFix::range_residual_m)
+      .def_readonly("equation_residual_m3", &EllipseFix::equation_residual_m3)
+      .def_readonly("iterations", &EllipseFix::iterations)
+      .def_readonly("converged", &EllipseFix::converged);
+  const auto ellipses_of = [](const std::vector<NodeSite>& nodes, const FloatArray& path, const FloatArray& weight) {
+    const auto paths = as_span(path, "path_m");
+    const auto weights = as_span(weight, "weight");
+    if (paths.size() != nodes.size() || weights.size() != nodes.size())
+      throw py::value_error("nodes, path_m and weight must have the same length");
+    std::vector<RangeEllipse> ellipses;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      ellipses.push_back({nodes[i].tx, nodes[i].rx, paths[i], weights[i]});
+    return ellipses;
+  };
+  py::class_<EllipseLeastSquares>(m, "EllipseLeastSquares")
+      .def(py::init<>())
+      .def("configure", &EllipseLeastSquares::configure, py::arg("config"))
+      .def(
+          "process",
+          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes, const FloatArray& path,
+                        const FloatArray& weight, const Area& area) {
+            const std::vector<RangeEllipse> ellipses = ellipses_of(nodes, path, weight);
+            EllipseFix fix;
+            const Status status = self.process({ellipses.data(), ellipses.size()}, area, fix);
+            return py::make_tuple(status, fix);
+          },
+          py::arg("nodes"), py::arg("path_m").noconvert(), py::arg("weight").noconvert(), py::arg("area"),
+          "(status, EllipseFix) from one path a node.")
+      .def(
+          "refine",
+          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes, const FloatArray& path,
+                        const FloatArray& weight, const Point& position, bool robust) {
+            const std::vector<RangeEllipse> ellipses = ellipses_of(nodes, path, weight);
+            EllipseFix fix;
+            fix.position = position;
+            const Status status = self.refine({ellipses.data(), ellipses.size()}, robust, fix);
+            return py::make_tuple(status, fix);
+          },
+          py::arg("nodes"), py::arg("path_m").noconvert(), py::arg("weight").noconvert(), py::arg("position"),
+          py::arg("robust"), "(status, EllipseFix) by Gauss-Newton from a position.");
+}
+
+void bind_selection(py::module_& m) {
+  using hub::Measurement;
+  using hub::MeasurementSelection;
+  using hub::SelectionConfig;
+  using hub::SelectionCounters;
+  PYBIND11_NUMPY_DTYPE(Measurement, x_m, y_m, weight, range_residual_m, n_nodes);
+  py::enum_<hub::SelectionMethod>(m, "SelectionMethod")
+      .value("consensus", hub::SelectionMethod::kConsensus)
+      .value("all_tuples", hub::SelectionMethod::kAllTuples);
+  py::enum_<hub::SelectionResidual>(m, "SelectionResidual")
+      .value("range_residual", hub::SelectionResidual::kRangeResidual)
+      .value("equation_residual", hub::SelectionResidual::kEquationResidual);
+  ConfigBinder<SelectionConfig>(m, "SelectionConfig", "Positions from a frame's detections.")
+      .field("method", &SelectionConfig::method)
+      .field("residual", &SelectionConfig::residual)
+      .field("nodes_per_tuple", &SelectionConfig::nodes_per_tuple, "nu")
+      .field("min_weight", &SelectionConfig::min_weight, "[1]")
+      .field("max_range_residual_m", &SelectionConfig::max_range_residual_m, "[m]")
+      .field("max_equation_residual_m3", &SelectionConfig::max_equation_residual_m3, "[m^3]")
+      .field("coarse_residual_m", &SelectionConfig::coarse_residual_m, "[m]")
+      .field("support_gate_m", &SelectionConfig::support_gate_m, "[m]")
+      .field("min_support", &SelectionConfig::min_support, "nodes")
+      .field("min_support_fraction", &SelectionConfig::min_support_fraction, "of the nodes that reported")
+      .field("min_own_support", &SelectionConfig::min_own_support, "nodes")
+      .field("echo_tail_m", &SelectionConfig::echo_tail_m, "[m]")
+      .field("track_aided", &SelectionConfig::track_aided)
+      .field("track_gate_m", &SelectionConfig::track_gate_m, "[m]")
+      .field("track_min_support", &SelectionConfig::track_min_support, "nodes")
+      .field("track_min_own_support", &SelectionConfig::track_min_own_support, "nodes");
+  py::class_<SelectionCounters>(m, "SelectionCounters")
+      .def_readonly("frames", &SelectionCounters::frames)
+      .def_readonly("tuples", &SelectionCounters::tuples)
+      .def_readonly("dropped_tuples", &SelectionCounters::dropped_tuples)
+      .def_readonly("dropped_detections", &SelectionCounters::dropped_detections)
+      .def_readonly("dropped_measurements", &SelectionCounters::dropped_measurements);
+  py::class_<MeasurementSelection>(m, "MeasurementSelection")
+      .def(py::init<>())
+      .def(
+          "configure",
+          [](MeasurementSelection& self, const SelectionConfig& config, const hub::EllipseConfig& ellipse,
+             const std::vector<NodeSite>& nodes, const Area& area) {
+            return self.configure(config, ellipse, {nodes.data(), nodes.size()}, area);
+          },
+          py::arg("config"), py::arg("ellipse"), py::arg("nodes"), py::arg("area"))
+      .def("reset", &MeasurementSelection::reset)
+      .def_property_readonly("counters", &MeasurementSelection::counters)
+      .def(
+          "process",
+          [](MeasurementSelection& self, const ArrayOf<int>& node_index, const FloatArray& path,
+             const FloatArray& weight, int n_reported, const FloatArray& predictions) {
+            const auto nodes = as_span(node_index, "node_index");
+            const auto paths = as_span(path, "path_m");
+            const auto weights = as_span(weight, "weight");
+            if (paths.size() != nodes.size() || weights.size() != nodes.size())
+              throw py::value_error("node_index, path_m and weight must have the same length");
+            std::vector<hub::FrameDetection> detections;
+            for (std::size_t i = 0; i < nodes.size(); ++i) detections.push_back({nodes[i], paths[i], weights[i]});
+            const auto rows = as_span_of_rows(predictions, 2, "predictions_m");
+            std::vector<Point> points;
+            for (std::size_t i = 0; i < rows.size(); i += 2) points.push_back({rows[i], rows[i + 1]});
+            BoundedVector<Measurement, kMaxMeasurementsPerFrame> measurements;
+            const Status status = self.process({detections.data(), detections.size()}, n_reported,
+                                               {points.data(), points.size()}, measurements);
+            return py::make_tuple(status, to_array(measurements));
+          },
+          py::arg("node_index").noconvert(), py::arg("path_m").noconvert(), py::arg("weight").noconvert(),
+          py::arg("n_reported"), py::arg("predictions_m").noconvert(),
+          "(status, structured array of Measurement) of one frame; predictions_m (p, 2).");
+}
+
+void bind_point_clusters(py::module_& m) {
+  using hub::PointCluster;
+  using hub::PointClusterConfig;
+  using hub::PointClusters;
+  PYBIND11_NUMPY_DTYPE(PointCluster, x_m, y_m, members, weight);
+  py::enum_<hub::ClusterDistance>(m, "ClusterDistance")
+      .value("centroid", hub::ClusterDistance::kCentroid)
+      .value("minimum", hub::ClusterDistance::kMinimum)
+      .value("maximum", hub::ClusterDistance::kMaximum);
+  ConfigBinder<PointClusterConfig>(m, "PointClusterConfig", "Hierarchical clustering (Algorithm 2, mended).")
+      .field("distance", &PointClusterConfig::distance)
+      .field("threshold_m", &PointClusterConfig::threshold_m, "[m]");
+  py::class_<PointClusters>(m, "PointClusters")
+      .def(py::init<>())
+      .def("configure", &PointClusters::configure, py::arg("config"))
+      .def_property_readonly("dropped", &PointClusters::dropped)
+      .def(
+          "process",
+          [](PointClusters& self, const FloatArray& position, const FloatArray& weight) {
+            const auto rows = as_span_of_rows(position, 2, "position_m");
+            const auto weights = as_span(weight, "weight");
+            if (rows.size() != 2 * weights.size()) throw py::value_error("position_m must have one row a weight");
+            std::vector<hub::Measurement> points;
+            for (std::size_t i = 0; i < weights.size(); ++i)
+              points.push_back({rows[2 * i], rows[2 * i + 1], weights[i], 0.0f, 0});
+            BoundedVector<PointCluster, kMaxPointsPerFrame> clusters;
+            const Status status = self.process({points.data(), points.size()}, clusters);
+            return py::make_tuple(status, to_array(clusters));
+          },
+          py::arg("position_m").noconvert(), py::arg("weight").noconvert(),
+          "(status, structured array of PointCluster) of positions (n, 2).");
+}
+
+}  // namespace
+
+void bind_hub(py::module_& m) {
+  bind_site(m);
+  bind_ellipse(m);
+  bind_selection(m);
+  bind_point_clusters(m);
+}
 
 }  // namespace echofuse::bindings
