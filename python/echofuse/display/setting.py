@@ -1,0 +1,100 @@
+"""What pictures need to know about a run besides its tables: who stood where and when."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from echofuse.recording import NodeRecording
+    from echofuse.result import RunResult
+    from echofuse.site import Site
+
+SPEED_OF_LIGHT_MPS = 299_792_458.0
+MONOSTATIC_WITHIN_M = 0.5  # two antennas of one module stand closer than this
+
+
+@dataclass(frozen=True, kw_only=True)
+class Person:
+    """Where one person truly was."""
+
+    name: str
+    time_s: NDArray[np.float64]  # (n,) on the hub's clock [s]
+    position_m: NDArray[np.float64]  # (n, 2)
+
+    def at(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the position (n_times, 2) [m], NaN when the person is not there."""
+        axes = [np.interp(time_s, self.time_s, self.position_m[:, axis]) for axis in (0, 1)]
+        position = np.stack(axes, axis=-1)
+        slack_s = 1e-6 + (float(np.median(np.diff(self.time_s))) if self.time_s.size > 1 else 0.0)
+        away = (time_s < self.time_s[0] - slack_s) | (time_s > self.time_s[-1] + slack_s)
+        position[away] = np.nan
+        return position
+
+
+def people(result: RunResult) -> list[Person]:
+    """Return the people of the truth, none when the recording knows nobody."""
+    return [
+        Person(
+            name=person.id,
+            time_s=np.asarray(person.time_s, dtype=np.float64),
+            position_m=np.asarray(person.position_m, dtype=np.float64)[:, :2],
+        )
+        for person in result.recording.truth
+        if person.time_s.size > 0
+    ]
+
+
+def frame_time_s(result: RunResult) -> NDArray[np.float64]:
+    """Return the frames' times (n_frames,) on the hub's clock [s]."""
+    return np.asarray(result.frame_time_us, dtype=np.float64) * 1e-6
+
+
+def elapsed_s(result: RunResult, time_us: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return times [us] of the hub's clock as seconds since the first frame."""
+    start_us = int(result.frame_time_us[0]) if result.frame_time_us.size else 0
+    return np.asarray((np.asarray(time_us, dtype=np.int64) - start_us) * 1e-6, dtype=np.float64)
+
+
+def node_by_name(result: RunResult, name: str) -> NodeRecording:
+    """Return the recording of node `name`; KeyError when there is none."""
+    for node in result.recording.nodes:
+        if node.name == name:
+            return node
+    raise KeyError(name)
+
+
+def echo_delay_s(node: NodeRecording, position_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the delay Tx -> position (n, 2) -> Rx as (n,) [s], in the plane."""
+    tx_m = np.asarray(node.tx_position_m, dtype=np.float64)[:2]
+    rx_m = np.asarray(node.rx_position_m, dtype=np.float64)[:2]
+    path_m = np.linalg.norm(position_m - tx_m, axis=-1) + np.linalg.norm(position_m - rx_m, axis=-1)
+    return np.asarray(path_m / SPEED_OF_LIGHT_MPS)
+
+
+def is_monostatic(node: NodeRecording) -> bool:
+    """Whether a node hears its own transmitter."""
+    apart_m = np.linalg.norm(np.asarray(node.tx_position_m)[:2] - np.asarray(node.rx_position_m)[:2])
+    return bool(apart_m < MONOSTATIC_WITHIN_M)
+
+
+def sample_delay_s(result: RunResult, name: str, n_samples: int) -> NDArray[np.float64]:
+    """Return each sample's propagation delay (n_samples,) [s]: the node's, else the recording's."""
+    stack = result.stacks.get(name)
+    if stack is not None and stack.delay_s.size == n_samples:
+        return np.asarray(stack.delay_s, dtype=np.float64)
+    node = node_by_name(result, name)
+    return np.asarray(float(node.first_sample_s) + np.arange(n_samples) / float(node.sample_rate_hz))
+
+
+def area_outline_m(site: Site) -> NDArray[np.float64]:
+    """Return the watched area's outline (n, 2) [m]."""
+    return np.asarray(site.area, dtype=np.float64).reshape(-1, 2)
+
+
+def truth_path_m(site: Site) -> NDArray[np.float64] | None:
+    """Return the path (n, 2) [m] that the site says was walked, None when it says nothing."""
+    return None if site.truth is None else np.asarray(site.truth.path_m, dtype=np.float64).reshape(-1, 2)
