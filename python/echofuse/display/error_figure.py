@@ -80,7 +80,7 @@ def _draw_cdf(axes: Axes, series: Series, *, marked: bool) -> None:
     )
     axes.plot([PAPER_ERROR_M], [PAPER_FRACTION], "D", color=style.INK, markersize=5.5, zorder=4)
     axes.annotate(
-        "paper: 80 % under 0.40 m",
+        f"paper{' (error in the plane)' if marked else ''}: 80 % under 0.40 m",
         (PAPER_ERROR_M, 0.03),
         (-4, 0),
         textcoords="offset points",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MARGIN_M = 0.7  # around everything, for the names of nodes
 NAMED_TRACKS = 5  # in the legend; more are lumped together
-MAX_HEIGHT_IN = 11.0
+MAX_HEIGHT_IN = 8.0
 
 
 def room_figure(result: RunResult) -> Figure:
