@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import IntEnum
@@ -143,18 +143,16 @@ def simulate(
     duration_s: float = CASE_STUDY_DURATION_S,
     seed: int = 0,
     n_reference: int = REFERENCE_SCANS,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[range], Iterable[int]] = iter,
 ) -> Recording:
-    """A whole run in memory; `progress` hears (frames done, frames in all)."""
+    """A whole run in memory; `progress` goes through the frames, and may show how far it is."""
     simulation = SensorRadarSimulation(scene, people, seed=seed)
     total, radio, pulse = n_frames(scene, duration_s), scene.radio, scene.pulse
     scans = np.empty((len(scene.nodes), total, radio.n_samples), dtype=np.float32)
     time_s = np.empty((len(scene.nodes), total))
-    for index in range(total):
+    for index in progress(range(total)):
         frame = simulation.frame(index)
         scans[:, index], time_s[:, index] = frame.scans, frame.time_s
-        if progress is not None:
-            progress(index + 1, total)
     nodes = tuple(
         NodeRecording(
             name=node.name,
