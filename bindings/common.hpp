@@ -33,10 +33,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -106,6 +110,31 @@ struct FieldType<std::array<E, kSize>> {
   static std::string text() { return "collections.abc.Sequence[" + FieldType<E>::text() + "]"; }
 };
 
+/// A bool from a bool, an integer from an integer, a float from either number; TypeError otherwise.
+template <class F>
+F number_of(const py::handle& value, const std::string& label) {
+  const bool is_bool = py::isinstance<py::bool_>(value);
+  if (is_bool == std::is_same_v<F, bool>) {
+    try {
+      return py::cast<F>(value);
+    } catch (const py::cast_error&) {  // told below
+    }
+  }
+  throw py::type_error(label + " cannot be " + py::cast<std::string>(py::repr(value)));
+}
+
+/// repr() of a field's value, floats with the fewest digits that make the same float32.
+inline std::string text_of(const py::handle& value) {
+  if (!py::isinstance<py::float_>(value)) return py::cast<std::string>(py::repr(value));
+  const auto number = py::cast<float>(value);
+  char text[32];
+  for (int digits = 6; digits <= 9; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, static_cast<double>(number));
+    if (std::strtof(text, nullptr) == number) break;
+  }
+  return py::cast<std::string>(py::repr(py::float_(std::strtod(text, nullptr))));
+}
+
 template <class T>
 class ConfigBinder {
  public:
@@ -117,14 +146,21 @@ class ConfigBinder {
 
   template <class F>
   ConfigBinder& field(const char* name, F T::*member, const char* doc = "") {
-    type_.def_readwrite(name, member, doc);
-    names_->emplace_back(name);
-    const T defaults{};
-    signature_ += std::string(", ") + name + ": " + FieldType<F>::text() + " = ...";
-    if constexpr (std::is_arithmetic_v<F>) {
-      const std::string value = py::repr(py::cast(defaults.*member));
-      signature_.replace(signature_.size() - 3, 3, value);
+    std::string default_text = "...";
+    if constexpr (std::is_arithmetic_v<F>) {  // pybind11 alone would take None for a bool and True for a
+                                              // number
+      type_.def_property(
+          name, [member](const T& self) { return self.*member; },
+          [member, label = name_ + "." + name](T& self, const py::typing::Union<F>& value) {
+            self.*member = number_of<F>(value, label);
+          },
+          doc);
+      default_text = text_of(py::cast(T{}.*member));
+    } else {
+      type_.def_readwrite(name, member, doc);
     }
+    signature_ += std::string(", ") + name + ": " + FieldType<F>::text() + " = " + default_text;
+    names_->emplace_back(name);
     return *this;
   }
 
@@ -155,7 +191,7 @@ class ConfigBinder {
     std::string text = type_name + "(";
     for (const std::string& name : *names) {
       if (text.back() != '(') text += ", ";
-      text += name + "=" + py::cast<std::string>(py::repr(self.attr(name.c_str())));
+      text += name + "=" + text_of(self.attr(name.c_str()));
     }
     return text + ")";
   }
@@ -189,15 +225,15 @@ class ConfigBinder {
     type_.attr("__hash__") = py::none();
     type_.def("__copy__", [](const T& self) { return T(self); });
     type_.def(
-        "__deepcopy__", [](const T& self, const py::dict& /*memo*/) { return T(self); }, py::arg("memo"));
+        "__deepcopy__", [](const T& self, const py::object& /*memo*/) { return T(self); }, py::arg("memo"));
     type_.def_static(
-        "fields", [names] { return py::tuple(py::cast(*names)); }, "The names of all fields, in order.");
+        "fields", [names] { return py::typing::Tuple<py::str, py::ellipsis>(py::tuple(py::cast(*names))); },
+        "The names of all fields, in order.");
     type_.def(
         "invalid_field",
-        [](const T& self) -> py::object {
+        [](const T& self) -> std::optional<std::string> {
           const char* field = invalid_field(self);
-          if (field == nullptr) return py::none();
-          return py::str(field);
+          return field == nullptr ? std::nullopt : std::optional<std::string>(field);
         },
         "Name of the first field with an impossible value, or None.");
   }
