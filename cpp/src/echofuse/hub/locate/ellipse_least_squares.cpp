@@ -83,7 +83,8 @@ Status EllipseLeastSquares::configure(const EllipseConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   for (std::size_t i = 0; i < kStartSamples; ++i) {
-    const float angle = 2.0f * kPi * static_cast<float>(i) / static_cast<float>(kStartSamples);
+    // Half a step off the axes: nodes stand on walls, and so would samples stand on the area's edge.
+    const float angle = 2.0f * kPi * (static_cast<float>(i) + 0.5f) / static_cast<float>(kStartSamples);
     circle_[i] = {std::cos(angle), std::sin(angle)};
   }
   configured_ = true;

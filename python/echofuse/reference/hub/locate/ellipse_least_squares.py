@@ -65,7 +65,7 @@ def condition(normal: Array) -> float:
 
 
 def linear_system(ellipses: Ellipses, path: Array) -> tuple[Array, Array] | None:
-    """A (n - 1, 2) and g (n - 1,) of (22), or the differences of circles for monostatic nodes; None: neither."""
+    """A (n - 1, 2) and g (n - 1,) of (22), or differences of monostatic nodes' circles; None: neither."""
     x, x_t = ellipses.rx_m, ellipses.tx_m
     k = int(np.argmin(path))
     others = np.arange(len(path)) != k
@@ -92,16 +92,22 @@ def sampled_start(ellipses: Ellipses, path: Array, area_m: Array) -> Start | Non
     minor = np.sqrt(major**2 - half_baseline**2)
     along = (rx - tx) / (2 * half_baseline) if half_baseline > 0 else np.array([1.0, 0.0])
     across = np.array([-along[1], along[0]])
-    angle = 2 * np.pi * np.arange(N_START_SAMPLES) / N_START_SAMPLES
-    points = 0.5 * (tx + rx) + np.outer(major * np.cos(angle), along) + np.outer(minor * np.sin(angle), across)
-    costs = np.array([float(np.sum((path - path_m(point, ellipses.tx_m, ellipses.rx_m)) ** 2)) for point in points])
+    angle = (
+        2 * np.pi * (np.arange(N_START_SAMPLES) + 0.5) / N_START_SAMPLES
+    )  # off the axes: nodes are on walls
+    points = (
+        0.5 * (tx + rx) + np.outer(major * np.cos(angle), along) + np.outer(minor * np.sin(angle), across)
+    )
+    residuals = [path - path_m(point, ellipses.tx_m, ellipses.rx_m) for point in points]
+    costs = np.array([float(np.sum(residual**2)) for residual in residuals])
     costs[~np.all((points >= area_m[:2]) & (points <= area_m[2:]), axis=1)] = np.inf
     best = int(np.argmin(costs))
     if not np.isfinite(costs[best]):
         return None
     second = float(np.min(np.delete(costs, best)))
     edge = np.concatenate([points - area_m[:2], area_m[2:] - points], axis=1)
-    margin = min((second - costs[best]) / max(second, 1e-12) if np.isfinite(second) else 1.0, float(np.min(np.abs(edge))))
+    lead = (second - costs[best]) / max(second, 1e-12) if np.isfinite(second) else 1.0
+    margin = min(float(lead), float(np.min(np.abs(edge))))
     return Start(points[best], float("nan"), margin)
 
 
@@ -118,7 +124,7 @@ def start(ellipses: Ellipses, body_radius_m: float, area_m: Array) -> Start | No
         normal = a.T @ a
         margin = abs(condition(normal) / MIN_CONDITION - 1.0)
         if condition(normal) > MIN_CONDITION:
-            position = np.linalg.solve(normal, a.T @ g)
+            position = np.asarray(np.linalg.solve(normal, a.T @ g), dtype=np.float64)
             shared = bool(np.all(ellipses.tx_m == ellipses.tx_m[0]))
             error = float(np.linalg.norm(a @ position - g)) if shared else float("nan")
             return Start(position, error, margin)
@@ -129,8 +135,8 @@ def start(ellipses: Ellipses, body_radius_m: float, area_m: Array) -> Start | No
 def refine(config: EllipseConfig, ellipses: Ellipses, position_m: Array, robust: bool) -> EllipseFix | None:
     """Gauss-Newton on the paths from a start; None: singular.
 
-    With `robust` (and a scale) each path's weight is divided by 1 + (residual / scale)^2, so that one foul path
-    does not pull the fix.
+    With `robust` (and a scale) each path's weight is divided by 1 + (residual / scale)^2, so that one foul
+    path does not pull the fix.
     """
     position = np.array(position_m, dtype=np.float64)
     iterations, margin, converged = 0, 1.0, False

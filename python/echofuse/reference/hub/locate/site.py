@@ -20,13 +20,13 @@ def unit(position_m: Array, from_m: Array) -> Array:
     """Unit vectors (..., 2) that point from `from_m` to `position_m`; zero where they coincide."""
     offset = position_m - from_m
     distance = np.linalg.norm(offset, axis=-1, keepdims=True)
-    return np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
+    return np.asarray(np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0))
 
 
 def path_m(position_m: Array, tx_m: Array, rx_m: Array, body_radius_m: float = 0.0) -> Array:
     """Predicted path tx -> nearest skin of a round person at `position_m` -> rx [m], (...,).
 
-    ``|z - tx| + |z - rx| - 2 R cos(beta / 2)``; the sum of the two unit vectors has the length 2 cos(beta / 2).
+    ``|z - tx| + |z - rx| - 2 R cos(beta / 2)``; the two unit vectors' sum has the length 2 cos(beta / 2).
     """
     direct = np.linalg.norm(position_m - tx_m, axis=-1) + np.linalg.norm(position_m - rx_m, axis=-1)
     bisector = unit(position_m, tx_m) + unit(position_m, rx_m)

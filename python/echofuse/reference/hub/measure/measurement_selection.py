@@ -1,15 +1,14 @@
 """Positions from a frame's detections (sensor-radar paper, V-A and V-B), and a greedy choice among them."""
 
 from itertools import combinations, product
-from math import comb, prod
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.reference.hub.locate.ellipse_least_squares import (
-    Ellipses,
     EllipseConfig,
+    Ellipses,
     ellipse_least_squares,
     range_residual_m,
     refine,
@@ -92,7 +91,9 @@ class Needed(NamedTuple):
 class Selector:
     """One frame's work; the margin collects how near its decisions came to flipping."""
 
-    def __init__(self, config: SelectionConfig, ellipse: EllipseConfig, site: Site, limits: Limits, frame: Frame):
+    def __init__(
+        self, config: SelectionConfig, ellipse: EllipseConfig, site: Site, limits: Limits, frame: Frame
+    ):
         self.config, self.ellipse, self.site, self.limits, self.frame = config, ellipse, site, limits, frame
         self.margin = np.inf
         self.used = np.zeros(len(frame.path_m), dtype=bool)
@@ -158,24 +159,27 @@ class Selector:
 
     def candidate(self, position_m: Array, gate_m: float, needed: Needed) -> Candidate | None:
         """Refine a position with all that support it, twice; None when too few do, or they contradict."""
-        position = position_m
-        for gate in (gate_m, self.config.support_gate_m):
-            chosen = self.supporters(position, gate)
-            indices = [index for index in chosen if index >= 0]
-            own = int(np.sum(~self.used[indices]))
-            if len(indices) < needed.support or own < needed.own:
-                return None
-            fix = refine(self.ellipse, self.ellipses(indices), position, robust=True)
-            if fix is None:
-                return None
-            self.margin = min(self.margin, fix.margin)
-            position = fix.position_m
+        once = self.supported_fix(position_m, gate_m, needed)
+        twice = once and self.supported_fix(once.position_m, self.config.support_gate_m, needed)
+        if twice is None or not self.decide(-twice.weight, -self.config.min_weight):
+            return None
+        if not self.inside(twice.position_m):
+            return None
+        return twice if self.decide(twice.residual_m, self.config.max_range_residual_m) else None
+
+    def supported_fix(self, position_m: Array, gate_m: float, needed: Needed) -> Candidate | None:
+        """A position refined with all nodes that support it."""
+        chosen = self.supporters(position_m, gate_m)
+        indices = [index for index in chosen if index >= 0]
+        own = int(np.sum(~self.used[indices]))
+        if len(indices) < needed.support or own < needed.own:
+            return None
+        fix = refine(self.ellipse, self.ellipses(indices), position_m, robust=True)
+        if fix is None:
+            return None
+        self.margin = min(self.margin, fix.margin)
         weight = float(np.sum(self.frame.weight[indices]))
-        if not self.decide(-weight, -self.config.min_weight) or not self.inside(position):
-            return None
-        if not self.decide(fix.range_residual_m, self.config.max_range_residual_m):
-            return None
-        return Candidate(position, chosen, fix.range_residual_m, weight, own)
+        return Candidate(fix.position_m, chosen, fix.range_residual_m, weight, own)
 
     def candidates(self, tuples: list[Chosen]) -> list[Candidate]:
         """The supported fixes of all tuples that no earlier candidate explains already."""
@@ -189,7 +193,9 @@ class Selector:
             if begin is None:
                 continue
             self.margin = min(self.margin, begin.margin)
-            coarse = range_residual_m(begin.position_m, self.ellipses(list(indices)), self.ellipse.body_radius_m)
+            coarse = range_residual_m(
+                begin.position_m, self.ellipses(list(indices)), self.ellipse.body_radius_m
+            )
             if not self.decide(coarse, self.config.coarse_residual_m):
                 continue
             fix = refine(self.ellipse, self.ellipses(list(indices)), begin.position_m, robust=False)
@@ -240,7 +246,9 @@ class Selector:
         for index, (node, path) in enumerate(zip(self.frame.node_index, self.frame.path_m, strict=True)):
             tx, rx = self.site.tx_m[node], self.site.rx_m[node]
             behind = float(path - path_m(winner.position_m, tx, rx, self.ellipse.body_radius_m))
-            if self.decide(-behind, self.config.support_gate_m) and self.decide(behind, self.config.echo_tail_m):
+            if self.decide(-behind, self.config.support_gate_m) and self.decide(
+                behind, self.config.echo_tail_m
+            ):
                 self.used[index] = True
 
     def aided(self, predictions_m: Array) -> list[Candidate]:
@@ -266,11 +274,13 @@ def elementary_symmetric(counts: list[int], order: int) -> int:
     return sums[order]
 
 
-def choose_tuples(frame: Frame, used: NDArray[np.bool_], order: int, max_tuples: int) -> tuple[list[Chosen], int, int]:
+def choose_tuples(
+    frame: Frame, used: NDArray[np.bool_], order: int, max_tuples: int
+) -> tuple[list[Chosen], int, int]:
     """Tuples to solve, the number of detections that are in none for lack of room, and of tuples left out.
 
-    When there are too many: the heaviest `depth` detections of each node, the greatest depth for which an eighth
-    of the tuples fits; then every `stride`-th choice of nodes, then the first `max_tuples`.
+    When there are too many: the heaviest `depth` detections of each node, the greatest depth for which an
+    eighth of the tuples fits; then every `stride`-th choice of nodes, then the first `max_tuples`.
     """
     nodes = [int(node) for node in np.unique(frame.node_index)]
     lists = {n: [int(i) for i in np.flatnonzero((frame.node_index == n) & ~used)] for n in nodes}
@@ -278,7 +288,9 @@ def choose_tuples(frame: Frame, used: NDArray[np.bool_], order: int, max_tuples:
     counts = [len(indices) for indices in lists.values()]
     total = elementary_symmetric(counts, order)
     depth = max(counts, default=0)
-    while depth > 1 and elementary_symmetric([min(c, depth) for c in counts], order) > DEPTH_SLACK * max_tuples:
+    while (
+        depth > 1 and elementary_symmetric([min(c, depth) for c in counts], order) > DEPTH_SLACK * max_tuples
+    ):
         depth -= 1
     dropped_detections = sum(max(0, c - depth) for c in counts)
     for node, indices in lists.items():

@@ -1,4 +1,4 @@
-"""Hierarchical clustering of points (sensor-radar paper, Algorithm 2, with the least distance found anew in each pass)."""
+"""Hierarchical clustering (sensor-radar paper, Algorithm 2, with the least distance found anew in each pass)."""
 
 from typing import NamedTuple, Protocol
 

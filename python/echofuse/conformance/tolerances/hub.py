@@ -1,0 +1,28 @@
+"""Tolerances of the hub's stages."""
+
+from echofuse.conformance.tolerances._tolerance import Tolerance
+
+_FIX = (
+    "Gauss-Newton ends at steps under 0.1 mm; float32 paths of 10 m carry 1e-6 m, times the geometry's factor"
+)
+
+ROWS: dict[str, Tolerance] = {
+    "hub.path_length": Tolerance(1e-6, 1e-6, "two square roots and a sum in float32"),
+    "hub.path_gradient": Tolerance(
+        1e-5, 1e-5, "unit vectors in float32; at 10 cm from an antenna 1e-6 m is 1e-5"
+    ),
+    "hub.ellipse.position": Tolerance(0.0, 5e-4, _FIX),
+    "hub.ellipse.start": Tolerance(
+        1e-4, 1e-3, "normal equations square the condition, up to 1e3, of float32 rows"
+    ),
+    "hub.ellipse.range_residual": Tolerance(1e-4, 5e-4, _FIX),
+    "hub.ellipse.equation_residual": Tolerance(1e-3, 5e-3, "rows of up to 500 m^3 in float32 leave 1e-3 m^3"),
+    "hub.selection.position": Tolerance(0.0, 1e-3, _FIX + "; a position far off the nodes' hull triples it"),
+    "hub.selection.range_residual": Tolerance(1e-4, 1e-3, _FIX),
+    "hub.selection.weight": Tolerance(1e-6, 1e-6, "a sum of at most 16 float32 weights"),
+    "hub.point_clusters.position": Tolerance(1e-6, 1e-5, "running sums of up to 256 float32 positions"),
+    "hub.point_clusters.weight": Tolerance(1e-6, 1e-5, "a sum of up to 256 float32 weights"),
+    "hub.coverage.snr_db": Tolerance(1e-5, 1e-4, "powers and a logarithm in float32"),
+    "hub.coverage.bound": Tolerance(1e-4, 1e-6, "inverse of a 2 x 2 matrix in float32, condition up to 1e3"),
+    "hub.frame.path": Tolerance(1e-6, 0.0, "one float32 product"),
+}
