@@ -1,0 +1,186 @@
+#include "echofuse/estimation/mixture_em.hpp"
+#include "echofuse/hub/track/kalman_tracker.hpp"
+#include "echofuse/hub/track/phd_filter.hpp"
+#include "echofuse/hub/track/phd_tracker.hpp"
+#include "echofuse/hub/track/track_manager.hpp"
+#include "particles.hpp"
+#include "tracks.hpp"
+
+namespace echofuse::bindings {
+namespace {
+
+using hub::AssociationRule;
+using hub::KalmanTracker;
+using hub::PhdConfig;
+using hub::PhdFilter;
+using hub::PhdTracker;
+using hub::ResamplingChance;
+using hub::TrackEstimate;
+using hub::TrackManager;
+using hub::TrackManagerConfig;
+using hub::TrackUpdate;
+using link::Track;
+using link::TrackState;
+
+/// The taps of one call, by id, copied while they are valid.
+struct TapRecorder {
+  py::dict taps;
+  std::size_t columns_of(TapId tap) const { return tap == TapId::kTracks ? 7 : 5; }
+  static void record(void* context, TapId tap, Span<const float> values) {
+    auto& self = *static_cast<TapRecorder*>(context);
+    const std::size_t columns = self.columns_of(tap);
+    py::array_t<float> rows({static_cast<py::ssize_t>(values.size() / columns), static_cast<py::ssize_t>(columns)});
+    std::copy(values.begin(), values.end(), rows.mutable_data());
+    self.taps[py::int_(static_cast<int>(tap))] = rows;
+  }
+};
+
+template <class Tracker>
+py::tuple run(Tracker& self, const FloatArray& measurements, float dt_s) {
+  link::Tracks tracks;
+  const auto positions = to_positions(measurements, "measurements");
+  const Status status = self.process(view(positions), dt_s, tracks);
+  return py::make_tuple(status, to_array(tracks));
+}
+
+template <class Tracker>
+py::tuple run_with_taps(Tracker& self, const FloatArray& measurements, float dt_s) {
+  TapRecorder recorder;
+  self.set_tap_sink({&TapRecorder::record, &recorder});
+  const py::tuple result = run(self, measurements, dt_s);
+  self.set_tap_sink({});
+  return py::make_tuple(result[0], result[1], recorder.taps);
+}
+
+void bind_phd_filter(py::module_& m) {
+  py::enum_<ResamplingChance>(m, "ResamplingChance", "In proportion to what particles are drawn.")
+      .value("square_root", ResamplingChance::kSquareRoot)
+      .value("proportional", ResamplingChance::kProportional);
+  ConfigBinder<PhdConfig>(m, "PhdConfig", "Particle PHD filter with measurement-driven birth.")
+      .field("detection_probability", &PhdConfig::detection_probability, "per frame")
+      .field("survival_probability", &PhdConfig::survival_probability, "per frame")
+      .field("clutter_per_frame", &PhdConfig::clutter_per_frame, "expected, uniform over the area")
+      .field("birth_per_frame", &PhdConfig::birth_per_frame, "expected, uniform over the area")
+      .field("area_m2", &PhdConfig::area_m2, "[m^2]")
+      .field("measurement_std_m", &PhdConfig::measurement_std_m, "[m] per coordinate")
+      .field("acceleration_density_m2ps3", &PhdConfig::acceleration_density_m2ps3, "[m^2/s^3]")
+      .field("newborn_velocity_std_mps", &PhdConfig::newborn_velocity_std_mps, "[m/s] per coordinate")
+      .field("particles_per_target", &PhdConfig::particles_per_target)
+      .field("newborn_per_measurement", &PhdConfig::newborn_per_measurement)
+      .field("mass_average_frames", &PhdConfig::mass_average_frames)
+      .field("resampling", &PhdConfig::resampling)
+      .field("seed", &PhdConfig::seed);
+  py::class_<PhdFilter>(m, "PhdFilter", "A frame is predict, update, resample.")
+      .def(py::init<>())
+      .def("configure", &PhdFilter::configure, py::arg("config"))
+      .def("reset", &PhdFilter::reset)
+      .def("predict", &PhdFilter::predict, py::arg("dt_s"))
+      .def(
+          "update",
+          [](PhdFilter& self, const FloatArray& measurements) {
+            const auto positions = to_positions(measurements, "measurements");
+            return self.update(view(positions));
+          },
+          py::arg("measurements").noconvert(), "measurements (m, 2) [m]")
+      .def("resample", &PhdFilter::resample)
+      .def_property_readonly("particles", [](const PhdFilter& self) { return to_rows(self.particles()); })
+      .def_property_readonly("persistent", [](const PhdFilter& self) { return to_rows(self.persistent()); })
+      .def_property_readonly("measurement_mass",
+                             [](const PhdFilter& self) {
+                               py::array_t<float> mass(static_cast<py::ssize_t>(self.seeds().size()));
+                               for (std::size_t i = 0; i < self.seeds().size(); ++i)
+                                 mass.mutable_data()[i] = self.seeds()[i].mass;
+                               return mass;
+                             })
+      .def_property_readonly("mass", &PhdFilter::mass)
+      .def_property_readonly("number", &PhdFilter::number)
+      .def_property_readonly("peak_seed", &PhdFilter::peak_seed);
+}
+
+void bind_track_manager(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(Track, id, state, frames_since_update, x_m, y_m, vx_mps, vy_mps, covariance_xx_m2,
+                       covariance_xy_m2, covariance_yy_m2);
+  py::enum_<TrackState>(m, "TrackState")
+      .value("unconfirmed", TrackState::kUnconfirmed)
+      .value("confirmed", TrackState::kConfirmed)
+      .value("silent", TrackState::kSilent)
+      .value("dead", TrackState::kDead);
+  py::enum_<AssociationRule>(m, "AssociationRule", "Which pairs of track and point hold.")
+      .value("per_pair", AssociationRule::kPerPair)
+      .value("hypothesis_cost", AssociationRule::kHypothesisCost);
+  py::enum_<TrackUpdate>(m, "TrackUpdate", "What a point does to its track.")
+      .value("estimate", TrackUpdate::kEstimate)
+      .value("kalman", TrackUpdate::kKalman);
+  ConfigBinder<TrackManagerConfig>(m, "TrackManagerConfig", "Association, life and motion of tracks.")
+      .field("association", &TrackManagerConfig::association)
+      .field("update", &TrackManagerConfig::update)
+      .field("gate_m", &TrackManagerConfig::gate_m, "[m]")
+      .field("cost_max_m", &TrackManagerConfig::cost_max_m, "[m] of hypothesis_cost")
+      .field("gate_sigma", &TrackManagerConfig::gate_sigma, "deviations, of kalman; 0: no test")
+      .field("silent_gate_growth_mps", &TrackManagerConfig::silent_gate_growth_mps, "[m/s]")
+      .field("silent_gate_max_m", &TrackManagerConfig::silent_gate_max_m, "[m]")
+      .field("birth_exclusion_m", &TrackManagerConfig::birth_exclusion_m, "[m]")
+      .field("confirm_updates", &TrackManagerConfig::confirm_updates, "the first point included")
+      .field("silent_time_min_s", &TrackManagerConfig::silent_time_min_s, "[s]")
+      .field("silent_time_per_confirmed", &TrackManagerConfig::silent_time_per_confirmed)
+      .field("silent_time_max_s", &TrackManagerConfig::silent_time_max_s, "[s]")
+      .field("silent_velocity_time_s", &TrackManagerConfig::silent_velocity_time_s, "[s]")
+      .field("acceleration_density_m2ps3", &TrackManagerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
+      .field("measurement_std_m", &TrackManagerConfig::measurement_std_m, "[m] of kalman")
+      .field("velocity_std_mps", &TrackManagerConfig::velocity_std_mps, "[m/s]");
+  py::class_<TrackManager>(m, "TrackManager", "Tracks from the points of each frame.")
+      .def(py::init<>())
+      .def("configure", &TrackManager::configure, py::arg("config"))
+      .def("reset", &TrackManager::reset)
+      .def(
+          "process",
+          [](TrackManager& self, const FloatArray& points, float dt_s) {
+            const auto rows = as_span_of_rows(points, 7, "points");
+            std::vector<TrackEstimate> estimates;
+            for (std::size_t i = 0; i < rows.size(); i += 7)
+              estimates.push_back({rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5],
+                                   rows[i + 6]});
+            link::Tracks tracks;
+            const Status status = self.process(view(estimates), dt_s, tracks);
+            return py::make_tuple(status, to_array(tracks));
+          },
+          py::arg("points").noconvert(), py::arg("dt_s"),
+          "(status, structured array of Track) of points (n, 7): x, y, vx, vy, covariance xx, xy, yy.")
+      .def_property_readonly("point_of_track",
+                             [](const TrackManager& self) { return to_array(self.point_of_track()); })
+      .def_property_readonly("dropped_births", &TrackManager::dropped_births);
+}
+
+void bind_trackers(py::module_& m) {
+  py::class_<PhdTracker>(m, "PhdTracker", "Particle PHD filter, its peaks, tracks.")
+      .def(py::init<>())
+      .def("configure", &PhdTracker::configure, py::arg("phd"), py::arg("em"), py::arg("tracks"))
+      .def("reset", &PhdTracker::reset)
+      .def("process", &run<PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
+           "(status, structured array of Track) of measurements (m, 2) [m].")
+      .def("process_with_taps", &run_with_taps<PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
+           "(status, tracks, taps): taps by TapId, each (n, columns).")
+      .def_property_readonly("mass", [](const PhdTracker& self) { return self.phd().mass(); })
+      .def_property_readonly("dropped_births",
+                             [](const PhdTracker& self) { return self.manager().dropped_births(); });
+  py::class_<KalmanTracker>(m, "KalmanTracker", "A Kalman filter a track and global nearest neighbour.")
+      .def(py::init<>())
+      .def("configure", &KalmanTracker::configure, py::arg("config"))
+      .def("reset", &KalmanTracker::reset)
+      .def("process", &run<KalmanTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
+           "(status, structured array of Track) of measurements (m, 2) [m].")
+      .def("process_with_taps", &run_with_taps<KalmanTracker>, py::arg("measurements").noconvert(),
+           py::arg("dt_s"), "(status, tracks, taps): taps by TapId, each (n, columns).")
+      .def_property_readonly("dropped_births",
+                             [](const KalmanTracker& self) { return self.manager().dropped_births(); });
+}
+
+}  // namespace
+
+void bind_hub_track(py::module_& m) {
+  bind_phd_filter(m);
+  bind_track_manager(m);
+  bind_trackers(m);
+}
+
+}  // namespace echofuse::bindings

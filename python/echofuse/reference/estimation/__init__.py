@@ -1,0 +1,1 @@
+"""Filters and decisions in float64: Kalman, assignment, resampling, mixtures."""

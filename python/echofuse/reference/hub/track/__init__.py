@@ -1,0 +1,1 @@
+"""From located points to tracks: particle PHD filter, track manager, Kalman baseline."""
