@@ -1,0 +1,78 @@
+"""What can be compared with the reference: the library in this process, and whatever else answers alike."""
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echofuse import _core
+
+Scan = NDArray[np.float32]
+Taps = dict[str, NDArray[np.float32]]
+
+
+@dataclass
+class NodeAnswer:
+    """What a node said about one complete scan."""
+
+    detections: NDArray[np.float64]  # (n, 2) delay [s], weight
+    taps: Taps = field(default_factory=dict)  # by the names of TapId
+
+
+class NodeTarget(Protocol):
+    """A configured node."""
+
+    def set_empty_room(self, scan: Scan) -> None:
+        """Average one scan (n_samples,) [count] of the empty room into the background."""
+
+    def process(self, scan: Scan, time_us: int) -> NodeAnswer | None:
+        """Take scan (n_samples,) [count]; an answer when it completes the pulses of a scan."""
+
+
+class ConformanceTarget(Protocol):
+    """A machine that runs the pipeline."""
+
+    name: str
+
+    def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
+        """Return a node configured and forgetful."""
+
+
+class InProcessNode:
+    """The library's node in this process."""
+
+    def __init__(self, config: "_core.SensorRadarNodeConfig") -> None:
+        self._node = _core.SensorRadarNode()
+        _expect(self._node.configure(config), f"configure, {config.invalid_field()}")
+
+    def set_empty_room(self, scan: Scan) -> None:
+        """See `NodeTarget`."""
+        _expect(self._node.set_empty_room(scan), "set_empty_room")
+
+    def process(self, scan: Scan, time_us: int) -> NodeAnswer | None:
+        """See `NodeTarget`."""
+        status, detections, taps = self._node.process_with_taps(scan, time_us)
+        _expect(status, "process", _core.Status.truncated)
+        if not self._node.report_ready():
+            return None
+        return NodeAnswer(_columns(detections, "delay_s", "weight"), taps)
+
+
+class InProcessTarget:
+    """The library in this process."""
+
+    name = "inprocess"
+
+    def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
+        """See `ConformanceTarget`."""
+        return InProcessNode(config)
+
+
+def _expect(status: Any, what: str, *others: Any) -> None:
+    if status not in (_core.Status.ok, *others):
+        raise RuntimeError(f"the target refuses to {what}: {status}")
+
+
+def _columns(table: NDArray[Any], *names: str) -> NDArray[np.float64]:
+    return np.stack([table[name].astype(np.float64) for name in names], axis=1)
