@@ -71,6 +71,35 @@ void correlate(Span<const float> envelope, Span<const float> reference, Range ra
     add_range(envelope, reference, inside(range, lowest + i, n_samples), lowest + i, products + i);
 }
 
+/// Vertex of the parabola through the products at shift - 1, shift and shift + 1, relative to shift. Sums of
+/// differences instead of differences of sums, which would leave 1e-5 samples of rounding error.
+float parabola_vertex(Span<const float> envelope, Span<const float> reference, Range range, int shift) {
+  const int n_samples = static_cast<int>(envelope.size());
+  const auto at = [&](int k) {
+    return k >= 0 && k < n_samples ? envelope[static_cast<std::size_t>(k)] : 0.0f;
+  };
+  float slope = 0.0f;
+  float curvature = 0.0f;
+  for (int begin = range.first; begin < range.last; begin += kProductsPerBlock) {
+    const int end = std::min(range.last, begin + kProductsPerBlock);
+    float block_slope = 0.0f;
+    float block_curvature = 0.0f;
+    float before = at(begin + shift - 1);
+    float here = at(begin + shift);
+    for (int k = begin; k < end; ++k) {
+      const float after = at(k + shift + 1);
+      const float value = reference[static_cast<std::size_t>(k)];
+      block_slope += value * (before - after);
+      block_curvature += value * ((before - here) - (here - after));
+      before = here;
+      here = after;
+    }
+    slope += block_slope;
+    curvature += block_curvature;
+  }
+  return curvature < 0.0f ? 0.5f * slope / curvature : 0.0f;
+}
+
 }  // namespace
 
 const char* invalid_field(const AlignmentConfig& config) {
@@ -121,11 +150,8 @@ Status Aligner::estimate(Span<const float> envelope, Span<const float> reference
   if (norm > 0.0f) alignment.correlation = products[best] / norm;
 
   alignment.shift_samples = static_cast<float>(shift);
-  if (config_.method == AlignmentMethod::kSubSample && best > 0 && best < n_shifts - 1) {
-    const float curvature = products[best - 1] - 2.0f * products[best] + products[best + 1];
-    if (curvature < 0.0f)
-      alignment.shift_samples += 0.5f * (products[best - 1] - products[best + 1]) / curvature;
-  }
+  if (config_.method == AlignmentMethod::kSubSample && best > 0 && best < n_shifts - 1)
+    alignment.shift_samples += parabola_vertex(envelope, reference, {first, last}, shift);
   return Status::kOk;
 }
 

@@ -196,7 +196,7 @@ class SensorRadarNode:
         return max(edge, min(blind, config.n_samples)), config.n_samples - edge
 
     def _detect(self, residual: Samples, first: int, last: int) -> tuple[Samples, NDArray[np.uint8], Samples]:
-        """Threshold, decisions and margins (n_samples,); threshold and decisions are 0 outside [first, last)."""
+        """Threshold, decisions, margins (n_samples,); the first two are 0 outside [first, last)."""
         config = self._config
         threshold = np.zeros(len(residual))
         margin = np.ones(len(residual))

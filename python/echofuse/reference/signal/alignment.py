@@ -23,10 +23,10 @@ class Alignment(NamedTuple):
 def estimate_shift(
     envelope: Samples, reference: Samples, coarse_shift: int, first: int, last: int, config: AlignmentConfig
 ) -> Alignment:
-    """Find m that maximises sum_k envelope[k + m] reference[k], k in [first, last), |m - coarse| <= max shift.
+    """Maximise sum_k envelope[k + m] reference[k], first <= k < last, |m - coarse| <= max shift.
 
-    envelope, reference: (n_samples,) [count]; the envelope counts as 0 outside. A parabola through the best m and its
-    neighbours gives the fraction, unless the best m is the last one allowed.
+    envelope, reference: (n_samples,) [count]; the envelope counts as 0 outside. A parabola through the best m
+    and its neighbours gives the fraction, unless the best m is the last one allowed.
     """
     reach = 0 if config.method == "none" else config.max_shift_samples
     centre = 0 if config.method == "none" else coarse_shift
@@ -51,7 +51,7 @@ def estimate_shift(
 
 
 def interpolator(fraction: float, half_length: int) -> Samples:
-    """Taps (2 half_length,) for offsets -half_length + 1 .. half_length: a Blackman-windowed sinc at `fraction`."""
+    """Taps for offsets -half_length + 1 .. half_length: a Blackman-windowed sinc at `fraction`."""
     x = np.arange(-half_length + 1, half_length + 1) - fraction
     window = 0.42 + 0.5 * np.cos(np.pi * x / half_length) + 0.08 * np.cos(2.0 * np.pi * x / half_length)
     taps = np.sinc(x) * window

@@ -21,7 +21,7 @@ def raised_cosine(offset: Samples, half_length: int) -> Samples:
 
 
 def hilbert_filter(half_length: int) -> Samples:
-    """Impulse response (2 half_length + 1,) of a Hilbert transformer: 2 / (pi n) at odd n, 0 at even n, windowed."""
+    """Taps (2 half_length + 1,) of a Hilbert transformer: 2 / (pi n) at odd n, 0 at even n, windowed."""
     n = np.arange(-half_length, half_length + 1, dtype=np.float64)
     odd = n % 2 != 0
     taps = np.zeros_like(n)

@@ -1,4 +1,4 @@
-"""Detectors with a constant false-alarm rate (sensor-radar paper, Sec. IV-E; factors: algorithms 6.4 and 6.5)."""
+"""Detectors with a constant false-alarm rate (sensor-radar paper, Sec. IV-E)."""
 
 from typing import NamedTuple, Protocol
 
@@ -24,7 +24,7 @@ class CfarConfig(Protocol):
 class CfarResult(NamedTuple):
     threshold: Samples  # (n_samples,) on the squared amplitude [count^2]
     decisions: NDArray[np.uint8]  # (n_samples,)
-    margin: Samples  # (n_samples,) least relative distance of a comparison that decided here from flipping
+    margin: Samples  # (n_samples,) least relative distance of a deciding comparison from flipping
 
 
 def averaging_factor(cells: int, false_alarm_probability: float) -> float:
@@ -38,7 +38,7 @@ def ordered_rank(cells: int, rank_fraction: float) -> int:
 
 
 def ordered_factor(cells: int, rank: int, false_alarm_probability: float) -> float:
-    """Threshold over the rank-th smallest of `cells` exponential cells: P_fa = prod (N - i) / (N - i + alpha)."""
+    """Threshold over the rank-th smallest of exponential cells: P_fa = prod (N - i) / (N - i + alpha)."""
     remaining = cells - np.arange(rank, dtype=np.float64)
 
     def excess(factor: float) -> float:  # falls with factor
@@ -92,7 +92,7 @@ def _double_threshold_buffer(power: Samples, config: CfarConfig) -> CfarResult:
 
 
 def double_threshold_buffer_pass(power: Samples, config: CfarConfig) -> CfarResult:
-    """Algorithm 1 in one direction over power (n_samples,) [count^2]; untested samples have an infinite threshold."""
+    """Algorithm 1 in one direction over power (n_samples,) [count^2]; untested ones have threshold inf."""
     global_power = float(np.mean(power))
     rise = config.rise_threshold_factor * global_power
     buffer = list(power[: config.buffer_samples])

@@ -38,13 +38,13 @@ class ClutterFilter:
         return bool(self._empty_room) or len(self._learnt) >= self._config.learning_scans
 
     def add_empty_room(self, samples: Samples) -> None:
-        """Add one scan or envelope (n_samples,) of the empty room to the background, in place of what was learnt."""
+        """Add one scan or envelope (n_samples,) of the empty room, in place of what was learnt."""
         self._empty_room.append(samples)
         self._average = np.mean(self._empty_room, axis=0)
         self._averaged = max(self._config.learning_scans, len(self._empty_room))
 
     def process(self, samples: Samples) -> Samples:
-        """Return samples - background (n_samples,) [count], signed; all 0 while the background is being learnt."""
+        """Return samples - background (n_samples,) [count], signed; all 0 while that is being learnt."""
         method = self._config.method
         if method == "frame_difference":
             return self._frame_difference(samples)

@@ -27,7 +27,7 @@ NOT_FOUND = DirectPath(False, 0.0, 0.0, 0, 1.0)
 
 
 def threshold_factor(config: DirectPathConfig) -> float:
-    """Threshold over sigma that Rayleigh noise exceeds anywhere in noise_samples with the early probability."""
+    """Threshold over sigma that Rayleigh noise exceeds within noise_samples, early, by chance."""
     no_crossing_per_sample = (1.0 - config.early_detection_probability) ** (1.0 / config.noise_samples)
     return float(np.sqrt(-2.0 * np.log(1.0 - no_crossing_per_sample)))
 
@@ -35,8 +35,8 @@ def threshold_factor(config: DirectPathConfig) -> float:
 def direct_path(envelope: NDArray[np.float64], config: DirectPathConfig) -> DirectPath:
     """Search the direct path in envelope (n_samples,) [count].
 
-    sigma^2 is half the mean square of the last `noise_samples` before peak - window. The crossing between the first
-    sample above the threshold and the one before it is interpolated linearly.
+    sigma^2 is half the mean square of the last `noise_samples` before peak - window. The crossing between the
+    first sample above the threshold and the one before it is interpolated linearly.
     """
     peak = int(np.argmax(envelope))
     start = max(0, peak - config.window_samples)

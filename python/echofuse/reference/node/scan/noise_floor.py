@@ -26,7 +26,7 @@ class NoiseFloor:
         self._averaged = 0
 
     def process(self, amplitude: Samples, threshold: Samples) -> Samples:
-        """Return threshold (n_samples,) [count^2], at least (factor * floor)^2; amplitude (n_samples,) [count]."""
+        """Return threshold (n,) [count^2], at least (factor * floor)^2; amplitude (n,) [count]."""
         config = self._config
         if config.factor == 0.0:
             return threshold

@@ -25,7 +25,7 @@ def lower_median(members: list[int]) -> int:
 
 
 def merged(hits: list[int], merge_distance_samples: int) -> list[list[int]]:
-    """Merge ascending hits: again and again the two clusters with the closest medians, the leftmost of equals."""
+    """Merge ascending hits: always the two clusters with the closest medians, the leftmost of equals."""
     clusters = [[hit] for hit in hits]
     while len(clusters) > 1:
         medians = [lower_median(members) for members in clusters]
@@ -38,7 +38,7 @@ def merged(hits: list[int], merge_distance_samples: int) -> list[list[int]]:
 
 
 def leading_edge(first: int, amplitude: NDArray[np.float64], threshold: NDArray[np.float64]) -> float:
-    """Where the square of amplitude crosses the threshold before sample `first`, linear between two samples."""
+    """Where the square of amplitude crosses the threshold before sample `first`, linearly."""
     excess = amplitude[first] ** 2 - threshold[first]
     if first == 0:
         return float(first)
@@ -55,7 +55,7 @@ def range_clusters(
     sample_rate_hz: float,
     config: RangeClusterConfig,
 ) -> list[RangeCluster]:
-    """Cluster decisions (n_samples,); amplitude [count] and threshold [count^2] (n_samples,) place the edges."""
+    """Cluster decisions (n,); amplitude [count] and threshold [count^2] (n,) place the edges."""
     merge_distance = round(config.merge_distance_s * sample_rate_hz)
     result = []
     for members in merged([int(k) for k in np.flatnonzero(decisions)], merge_distance):
