@@ -23,7 +23,8 @@
 ///       1)") .field("guard_cells_per_side", &CfarConfig::guard_cells_per_side, "[bin]");
 ///
 /// gives in Python a keyword-only constructor (an unknown keyword or a wrong type is a TypeError), attributes
-/// to read and write, repr, ==, copy, deepcopy; fields() -> tuple of names; and invalid_field()
+/// to read and write (a bool is no number and None is no bool), repr, ==, copy, deepcopy; fields() -> tuple
+/// of names; and invalid_field()
 /// -> the name of the first field with an impossible value or None, from the C++ function `const char*
 /// invalid_field(const CfarConfig&)` (nullptr when valid) that stands beside the struct. Fields may be bool,
 /// integers, float, a bound enum, std::array of those, or another bound configuration; bind enums and inner

@@ -47,7 +47,7 @@ def test_a_copy_is_independent(kind: Any) -> None:
         for name in kind.fields():
             value = getattr(config, name)
             if isinstance(value, float):
-                setattr(other, name, value + 1.0)
+                setattr(other, name, 2.0 * value + 1.0)
                 assert getattr(config, name) == value
                 assert other != config
                 break

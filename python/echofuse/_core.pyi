@@ -1,0 +1,2700 @@
+"""
+The C++ library, as it runs on nodes and hub. Private: use the modules of echofuse instead.
+"""
+
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import typing
+
+__all__: list[str] = [
+    "Aligner",
+    "Alignment",
+    "AlignmentConfig",
+    "AlignmentMethod",
+    "Area",
+    "AssociationRule",
+    "CfarConfig",
+    "CfarDetector",
+    "CfarMethod",
+    "ClusterDistance",
+    "ClusterRepresentative",
+    "ClutterConfig",
+    "ClutterFilter",
+    "ClutterMethod",
+    "ConstantVelocityFilter",
+    "Coverage",
+    "CoverageConfig",
+    "DirectPath",
+    "DirectPathConfig",
+    "DirectPathSearch",
+    "DirectPathSearcher",
+    "EllipseConfig",
+    "EllipseFix",
+    "EllipseLeastSquares",
+    "EllipseRefinement",
+    "Envelope",
+    "EnvelopeConfig",
+    "EnvelopeMethod",
+    "FrameAssembler",
+    "FrameAssemblerConfig",
+    "FrameAssemblerCounters",
+    "KalmanTracker",
+    "LIMITS",
+    "MeasurementSelection",
+    "MixtureConfig",
+    "MixtureFitter",
+    "NodeSite",
+    "NoiseFloor",
+    "NoiseFloorConfig",
+    "Pcg32",
+    "PeakInitialisation",
+    "PhdConfig",
+    "PhdFilter",
+    "PhdTracker",
+    "Point",
+    "PointClusterConfig",
+    "PointClusters",
+    "PulseIntegrator",
+    "PulseIntegratorConfig",
+    "RangeClusterConfig",
+    "RangeClusterer",
+    "ResamplingChance",
+    "SENSOR_RADAR_NODE_BYTES",
+    "SelectionConfig",
+    "SelectionCounters",
+    "SelectionMethod",
+    "SelectionResidual",
+    "SensorRadarNode",
+    "SensorRadarNodeConfig",
+    "Status",
+    "TimeZero",
+    "TrackManager",
+    "TrackManagerConfig",
+    "TrackState",
+    "TrackUpdate",
+    "assign",
+    "cassini_ratio",
+    "gaussian_kernel",
+    "invalid_site",
+    "leg_product_m2",
+    "max_leg_product_m2",
+    "path_length",
+    "rectify",
+    "snr",
+    "snr_on_ellipse",
+    "sum_on_cassini_m",
+    "systematic_resample",
+    "time_of_arrival_s",
+]
+
+class Status:
+    """
+    What a stage says of one call.
+
+    Members:
+
+      ok : done, outputs complete
+
+      truncated : a capacity was reached: what the outputs hold is valid, something was left out
+
+      not_configured : configure() has not succeeded yet; outputs empty
+
+      invalid_config : the configuration is impossible; the earlier one stays in force
+
+      invalid_input : the data cannot be used; outputs empty
+    """
+
+    __members__: typing.ClassVar[dict[str, Status]]
+    invalid_config: typing.ClassVar[Status]
+    invalid_input: typing.ClassVar[Status]
+    not_configured: typing.ClassVar[Status]
+    ok: typing.ClassVar[Status]
+    truncated: typing.ClassVar[Status]
+    @typing.overload
+    def __eq__(self, other: Status) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Status) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Pcg32:
+    """
+    PCG-XSH-RR 64/32; every number takes one 32-bit draw.
+    """
+    def __init__(
+        self,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+        stream: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
+    def next_u32(self) -> int: ...
+    def normal(self) -> float:
+        """
+        Standard normal, within +-5.42.
+        """
+    def normals(self, n: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        The next n normals, (n,).
+        """
+    def uniform(self) -> float:
+        """
+        In [0, 1), a multiple of 2^-24.
+        """
+    def uniforms(self, n: typing.SupportsInt | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        The next n uniforms, (n,).
+        """
+
+class EnvelopeMethod:
+    """
+    How the envelope is taken.
+
+    Members:
+
+      hilbert : |r + jH(r)|
+
+      square_low_pass : sqrt(2 LPF(r^2))
+    """
+
+    __members__: typing.ClassVar[dict[str, EnvelopeMethod]]
+    hilbert: typing.ClassVar[EnvelopeMethod]
+    square_low_pass: typing.ClassVar[EnvelopeMethod]
+    @typing.overload
+    def __eq__(self, other: EnvelopeMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: EnvelopeMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class EnvelopeConfig:
+    """
+    Amplitude envelope of a scan.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> EnvelopeConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> EnvelopeConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        method: EnvelopeMethod = ...,
+        hilbert_half_length_samples: int = 15,
+        low_pass_half_length_samples: int = 15,
+        low_pass_cutoff_hz: float = 1100000000.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def hilbert_half_length_samples(self) -> int:
+        """
+        [sample] taps on each side
+        """
+    @hilbert_half_length_samples.setter
+    def hilbert_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def low_pass_cutoff_hz(self) -> float:
+        """
+        [Hz] below half the sample rate
+        """
+    @low_pass_cutoff_hz.setter
+    def low_pass_cutoff_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def low_pass_half_length_samples(self) -> int:
+        """
+        [sample] taps on each side
+        """
+    @low_pass_half_length_samples.setter
+    def low_pass_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def method(self) -> EnvelopeMethod:
+        """
+        how the envelope is taken
+        """
+    @method.setter
+    def method(self, arg0: EnvelopeMethod) -> None: ...
+
+class Envelope:
+    """
+    Amplitude envelope of a scan.
+    """
+    def __init__(self) -> None: ...
+    def configure(
+        self, config: EnvelopeConfig, sample_rate_hz: typing.SupportsFloat | typing.SupportsIndex
+    ) -> Status: ...
+    def process(
+        self, scan: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, envelope): both (n_samples,) [count].
+        """
+    def reach_samples(self) -> int:
+        """
+        [sample] how far a sample spreads
+        """
+
+class AlignmentMethod:
+    """
+    How finely scans are aligned.
+
+    Members:
+
+      sub_sample : whole shift and a fraction
+
+      integer : whole shift
+
+      none : no shift
+    """
+
+    __members__: typing.ClassVar[dict[str, AlignmentMethod]]
+    integer: typing.ClassVar[AlignmentMethod]
+    none: typing.ClassVar[AlignmentMethod]
+    sub_sample: typing.ClassVar[AlignmentMethod]
+    @typing.overload
+    def __eq__(self, other: AlignmentMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: AlignmentMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class AlignmentConfig:
+    """
+    Alignment of scans with the background.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> AlignmentConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> AlignmentConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        method: AlignmentMethod = ...,
+        max_shift_samples: int = 8,
+        interpolator_half_length_samples: int = 8,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def interpolator_half_length_samples(self) -> int:
+        """
+        [sample] taps on each side
+        """
+    @interpolator_half_length_samples.setter
+    def interpolator_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def max_shift_samples(self) -> int:
+        """
+        [sample] searched on each side
+        """
+    @max_shift_samples.setter
+    def max_shift_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def method(self) -> AlignmentMethod:
+        """
+        how finely
+        """
+    @method.setter
+    def method(self, arg0: AlignmentMethod) -> None: ...
+
+class Alignment:
+    """
+    Delay of a scan against a reference.
+    """
+    @property
+    def correlation(self) -> float:
+        """
+        [1] normalised, at the best whole shift
+        """
+    @property
+    def shift_samples(self) -> float:
+        """
+        [sample] how much later
+        """
+
+class Aligner:
+    """
+    Finds and undoes the delay of a scan.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: AlignmentConfig) -> Status: ...
+    def estimate(
+        self,
+        envelope: numpy.typing.NDArray[numpy.float32],
+        reference: numpy.typing.NDArray[numpy.float32],
+        coarse_shift: typing.SupportsInt | typing.SupportsIndex,
+        first: typing.SupportsInt | typing.SupportsIndex,
+        last: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[Status, Alignment]:
+        """
+        (status, alignment); envelope, reference (n_samples,) [count].
+        """
+    def shift(
+        self,
+        input: numpy.typing.NDArray[numpy.float32],
+        shift_samples: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, output): input (n_samples,) read at k + shift_samples.
+        """
+
+class ConstantVelocityFilter:
+    """
+    State x, vx, y, vy and its covariance.
+    """
+    def __init__(
+        self, state: numpy.typing.NDArray[numpy.float32], covariance: numpy.typing.NDArray[numpy.float32]
+    ) -> None: ...
+    def predict(
+        self,
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+        acceleration_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        velocity_decay: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    ) -> None: ...
+    def update(
+        self,
+        x_m: typing.SupportsFloat | typing.SupportsIndex,
+        y_m: typing.SupportsFloat | typing.SupportsIndex,
+        measurement_covariance_m2: numpy.typing.NDArray[numpy.float32],
+    ) -> None: ...
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def state(self) -> numpy.typing.NDArray[numpy.float32]: ...
+
+class PeakInitialisation:
+    """
+    Where the search for peaks begins.
+
+    Members:
+
+      measurements
+
+      k_means_plus_plus
+    """
+
+    __members__: typing.ClassVar[dict[str, PeakInitialisation]]
+    k_means_plus_plus: typing.ClassVar[PeakInitialisation]
+    measurements: typing.ClassVar[PeakInitialisation]
+    @typing.overload
+    def __eq__(self, other: PeakInitialisation) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: PeakInitialisation) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class MixtureConfig:
+    """
+    Gaussian mixture by expectation-maximisation.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    initialisation: PeakInitialisation
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> MixtureConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> MixtureConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        initialisation: PeakInitialisation = ...,
+        restarts: int = 3,
+        initial_std_m: float = 0.2,
+        covariance_floor_m2: float = 0.001,
+        background_density_per_m2: float = 0.01,
+        max_iterations: int = 30,
+        tolerance_m: float = 0.001,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def background_density_per_m2(self) -> float:
+        """
+        [1/m^2], 0: none
+        """
+    @background_density_per_m2.setter
+    def background_density_per_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def covariance_floor_m2(self) -> float:
+        """
+        [m^2]
+        """
+    @covariance_floor_m2.setter
+    def covariance_floor_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def initial_std_m(self) -> float:
+        """
+        [m]
+        """
+    @initial_std_m.setter
+    def initial_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_iterations(self) -> int: ...
+    @max_iterations.setter
+    def max_iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def restarts(self) -> int:
+        """
+        of k_means_plus_plus
+        """
+    @restarts.setter
+    def restarts(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def tolerance_m(self) -> float:
+        """
+        [m]
+        """
+    @tolerance_m.setter
+    def tolerance_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class MixtureFitter:
+    """
+    Peaks of a particle density.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: MixtureConfig) -> Status: ...
+    def log_likelihood(
+        self,
+        particles: numpy.typing.NDArray[numpy.float32],
+        components: typing.Annotated[numpy.typing.ArrayLike, numpy.void],
+        background: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> float:
+        """
+        Weighted mean log density of particles (n, 5).
+        """
+    def process(
+        self,
+        particles: numpy.typing.NDArray[numpy.float32],
+        seeds: numpy.typing.NDArray[numpy.float32],
+        n_components: typing.SupportsInt | typing.SupportsIndex,
+        random: Pcg32,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void], float]:
+        """
+        (status, structured array of MixtureComponent, background share) of particles (n, 5) and seeds (s, 3).
+        """
+
+class PulseIntegratorConfig:
+    """
+    Coherent integration of pulses.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> PulseIntegratorConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> PulseIntegratorConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(self, *, pulses_per_scan: int = 1) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def pulses_per_scan(self) -> int:
+        """
+        pulse responses averaged into one scan, >= 1
+        """
+    @pulses_per_scan.setter
+    def pulses_per_scan(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class PulseIntegrator:
+    """
+    Mean of every N_s pulse responses.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: PulseIntegratorConfig) -> Status: ...
+    def process(self, pulse: numpy.typing.NDArray[numpy.float32]) -> tuple[Status, typing.Any]:
+        """
+        (status, scan (n_samples,) or None while incomplete).
+        """
+    def reset(self) -> None: ...
+
+class DirectPathSearch:
+    """
+    How the direct path's leading edge is searched.
+
+    Members:
+
+      serial_backward
+
+      threshold_crossing
+
+      jump_back_search_forward
+    """
+
+    __members__: typing.ClassVar[dict[str, DirectPathSearch]]
+    jump_back_search_forward: typing.ClassVar[DirectPathSearch]
+    serial_backward: typing.ClassVar[DirectPathSearch]
+    threshold_crossing: typing.ClassVar[DirectPathSearch]
+    @typing.overload
+    def __eq__(self, other: DirectPathSearch) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: DirectPathSearch) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class DirectPathConfig:
+    """
+    Time of arrival of the direct path.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> DirectPathConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> DirectPathConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        search: DirectPathSearch = ...,
+        noise_samples: int = 300,
+        early_detection_probability: float = 0.01,
+        window_samples: int = 60,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def early_detection_probability(self) -> float:
+        """
+        that noise crosses within noise_samples, in (1e-6, 1)
+        """
+    @early_detection_probability.setter
+    def early_detection_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def noise_samples(self) -> int:
+        """
+        [sample] that give the noise, >= 8
+        """
+    @noise_samples.setter
+    def noise_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def search(self) -> DirectPathSearch:
+        """
+        from where to where
+        """
+    @search.setter
+    def search(self, arg0: DirectPathSearch) -> None: ...
+    @property
+    def window_samples(self) -> int:
+        """
+        [sample] searched before the peak
+        """
+    @window_samples.setter
+    def window_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class DirectPath:
+    """
+    Where the direct path arrives.
+    """
+    @property
+    def found(self) -> bool: ...
+    @property
+    def peak_sample(self) -> int:
+        """
+        [sample]
+        """
+    @property
+    def threshold(self) -> float:
+        """
+        [count]
+        """
+    @property
+    def toa_samples(self) -> float:
+        """
+        [sample]; 0 unless found
+        """
+
+class DirectPathSearcher:
+    """
+    Time of arrival of the direct path.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: DirectPathConfig) -> Status: ...
+    def process(self, envelope: numpy.typing.NDArray[numpy.float32]) -> tuple[Status, DirectPath]:
+        """
+        (status, direct path): envelope (n_samples,) [count].
+        """
+    def threshold_factor(self) -> float:
+        """
+        threshold over sigma [1]
+        """
+
+class ClutterMethod:
+    """
+    What is taken as background.
+
+    Members:
+
+      empty_room_envelope : envelope less the empty room's
+
+      empty_room_scan : scan less the empty room's
+
+      exponential_average : scan less its mean so far
+
+      frame_difference : scan less an earlier scan
+    """
+
+    __members__: typing.ClassVar[dict[str, ClutterMethod]]
+    empty_room_envelope: typing.ClassVar[ClutterMethod]
+    empty_room_scan: typing.ClassVar[ClutterMethod]
+    exponential_average: typing.ClassVar[ClutterMethod]
+    frame_difference: typing.ClassVar[ClutterMethod]
+    @typing.overload
+    def __eq__(self, other: ClutterMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClutterMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ClutterConfig:
+    """
+    Removal of what stands still.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> ClutterConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> ClutterConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        method: ClutterMethod = ...,
+        averaging_factor: float = 0.95,
+        learning_scans: int = 20,
+        difference_lag_scans: int = 1,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def averaging_factor(self) -> float:
+        """
+        weight of the past, in (0, 1)
+        """
+    @averaging_factor.setter
+    def averaging_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def difference_lag_scans(self) -> int:
+        """
+        frame difference: how much earlier
+        """
+    @difference_lag_scans.setter
+    def difference_lag_scans(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def learning_scans(self) -> int:
+        """
+        scans that make a background, >= 1
+        """
+    @learning_scans.setter
+    def learning_scans(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def method(self) -> ClutterMethod:
+        """
+        what is taken as background
+        """
+    @method.setter
+    def method(self, arg0: ClutterMethod) -> None: ...
+
+class ClutterFilter:
+    """
+    Difference from a background.
+    """
+    def __init__(self) -> None: ...
+    def add_empty_room(self, samples: numpy.typing.NDArray[numpy.float32]) -> Status:
+        """
+        samples (n_samples,) [count]
+        """
+    def configure(
+        self, config: ClutterConfig, n_samples: typing.SupportsInt | typing.SupportsIndex
+    ) -> Status: ...
+    def process(
+        self, samples: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, residual): both (n_samples,) [count], signed.
+        """
+    def ready(self) -> bool: ...
+    def reset(self) -> None: ...
+
+class CfarMethod:
+    """
+    Where the threshold comes from.
+
+    Members:
+
+      double_threshold_buffer : Algorithm 1, both directions
+
+      cell_averaging
+
+      global_average
+
+      ordered_statistic
+    """
+
+    __members__: typing.ClassVar[dict[str, CfarMethod]]
+    cell_averaging: typing.ClassVar[CfarMethod]
+    double_threshold_buffer: typing.ClassVar[CfarMethod]
+    global_average: typing.ClassVar[CfarMethod]
+    ordered_statistic: typing.ClassVar[CfarMethod]
+    @typing.overload
+    def __eq__(self, other: CfarMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: CfarMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class CfarConfig:
+    """
+    Detector with a constant false-alarm rate.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> CfarConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> CfarConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        method: CfarMethod = ...,
+        false_alarm_probability: float = 0.0001,
+        training_cells_per_side: int = 32,
+        guard_cells_per_side: int = 16,
+        ordered_rank_fraction: float = 0.75,
+        local_factor: float = 5.0,
+        global_factor: float = 8.0,
+        buffer_samples: int = 25,
+        max_rises: int = 4,
+        rise_threshold_factor: float = 0.1,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def buffer_samples(self) -> int:
+        """
+        [sample] buffer: 1 .. 128
+        """
+    @buffer_samples.setter
+    def buffer_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def false_alarm_probability(self) -> float:
+        """
+        per sample, in [1e-9, 0.5]
+        """
+    @false_alarm_probability.setter
+    def false_alarm_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def global_factor(self) -> float:
+        """
+        buffer: weight of the global power, >= 0
+        """
+    @global_factor.setter
+    def global_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def guard_cells_per_side(self) -> int:
+        """
+        [sample] >= 0
+        """
+    @guard_cells_per_side.setter
+    def guard_cells_per_side(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def local_factor(self) -> float:
+        """
+        buffer: weight of the local power, > 0
+        """
+    @local_factor.setter
+    def local_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_rises(self) -> int:
+        """
+        buffer: more rises freeze the local power
+        """
+    @max_rises.setter
+    def max_rises(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def method(self) -> CfarMethod:
+        """
+        where the threshold comes from
+        """
+    @method.setter
+    def method(self, arg0: CfarMethod) -> None: ...
+    @property
+    def ordered_rank_fraction(self) -> float:
+        """
+        rank over cells, in (0, 1]
+        """
+    @ordered_rank_fraction.setter
+    def ordered_rank_fraction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def rise_threshold_factor(self) -> float:
+        """
+        buffer: a rise over the global power
+        """
+    @rise_threshold_factor.setter
+    def rise_threshold_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def training_cells_per_side(self) -> int:
+        """
+        [sample] 1 .. 64
+        """
+    @training_cells_per_side.setter
+    def training_cells_per_side(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class CfarDetector:
+    """
+    Decides sample by sample.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: CfarConfig) -> Status: ...
+    def factor(self, n_cells: typing.SupportsInt | typing.SupportsIndex) -> float:
+        """
+        threshold over the cells' mean or ranked one
+        """
+    def min_samples(self) -> int:
+        """
+        [sample] the shortest scan
+        """
+    def process(self, amplitude: numpy.typing.NDArray[numpy.float32]) -> tuple:
+        """
+        (status, threshold [count^2], decisions uint8): all (n_samples,); amplitude in [count].
+        """
+
+class NoiseFloorConfig:
+    """
+    Least threshold, from the quietest part of the scans.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> NoiseFloorConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> NoiseFloorConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self, *, factor: float = 0.0, block_samples: int = 24, averaging_factor: float = 0.98
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def averaging_factor(self) -> float:
+        """
+        weight of the past, in (0, 1)
+        """
+    @averaging_factor.setter
+    def averaging_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def block_samples(self) -> int:
+        """
+        [sample] length of a block
+        """
+    @block_samples.setter
+    def block_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def factor(self) -> float:
+        """
+        least amplitude over the floor, >= 0; 0: none
+        """
+    @factor.setter
+    def factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class NoiseFloor:
+    """
+    Least threshold, from the quietest part of the scans.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: NoiseFloorConfig) -> Status: ...
+    def floor(self) -> float:
+        """
+        [count] rms
+        """
+    def process(
+        self, amplitude: numpy.typing.NDArray[numpy.float32], threshold: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, threshold): all (n_samples,); amplitude [count], thresholds [count^2].
+        """
+    def reset(self) -> None: ...
+
+class ClusterRepresentative:
+    """
+    What a cluster stands for.
+
+    Members:
+
+      leading_edge
+
+      median
+    """
+
+    __members__: typing.ClassVar[dict[str, ClusterRepresentative]]
+    leading_edge: typing.ClassVar[ClusterRepresentative]
+    median: typing.ClassVar[ClusterRepresentative]
+    @typing.overload
+    def __eq__(self, other: ClusterRepresentative) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClusterRepresentative) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class RangeClusterConfig:
+    """
+    One-dimensional clustering of decisions.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> RangeClusterConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> RangeClusterConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        merge_distance_s: float = 3.97e-09,
+        min_weight: int = 4,
+        representative: ClusterRepresentative = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def merge_distance_s(self) -> float:
+        """
+        [s] closer medians merge
+        """
+    @merge_distance_s.setter
+    def merge_distance_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_weight(self) -> int:
+        """
+        lighter clusters are dropped, >= 1
+        """
+    @min_weight.setter
+    def min_weight(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def representative(self) -> ClusterRepresentative:
+        """
+        what a cluster stands for
+        """
+    @representative.setter
+    def representative(self, arg0: ClusterRepresentative) -> None: ...
+
+class RangeClusterer:
+    """
+    One-dimensional clustering of decisions.
+    """
+    def __init__(self) -> None: ...
+    def configure(
+        self, config: RangeClusterConfig, sample_rate_hz: typing.SupportsFloat | typing.SupportsIndex
+    ) -> Status: ...
+    def process(
+        self,
+        decisions: numpy.typing.NDArray[numpy.uint8],
+        amplitude: numpy.typing.NDArray[numpy.float32],
+        threshold: numpy.typing.NDArray[numpy.float32],
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, clusters): inputs (n_samples,); clusters is a structured array.
+        """
+
+class TimeZero:
+    """
+    Where delays are counted from.
+
+    Members:
+
+      direct_path : the background's direct path
+
+      recorded : first_sample_s is known
+    """
+
+    __members__: typing.ClassVar[dict[str, TimeZero]]
+    direct_path: typing.ClassVar[TimeZero]
+    recorded: typing.ClassVar[TimeZero]
+    @typing.overload
+    def __eq__(self, other: TimeZero) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: TimeZero) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class SensorRadarNodeConfig:
+    """
+    A node of the pipeline sensor_radar.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    alignment: AlignmentConfig
+    cfar: CfarConfig
+    clutter: ClutterConfig
+    direct_path: DirectPathConfig
+    envelope: EnvelopeConfig
+    noise_floor: NoiseFloorConfig
+    pulse_integrator: PulseIntegratorConfig
+    range_clusters: RangeClusterConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> SensorRadarNodeConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> SensorRadarNodeConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        node_id: int = 0,
+        n_samples: int = 1920,
+        sample_rate_hz: float = 16384000000.0,
+        first_sample_s: float = 0.0,
+        baseline_m: float = 0.0,
+        time_zero: TimeZero = ...,
+        delay_offset_s: float = 0.0,
+        blind_zone_s: float = 1.5e-09,
+        pulse_integrator: PulseIntegratorConfig = ...,
+        envelope: EnvelopeConfig = ...,
+        direct_path: DirectPathConfig = ...,
+        alignment: AlignmentConfig = ...,
+        clutter: ClutterConfig = ...,
+        cfar: CfarConfig = ...,
+        noise_floor: NoiseFloorConfig = ...,
+        range_clusters: RangeClusterConfig = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def baseline_m(self) -> float:
+        """
+        [m] transmitter to receiver, 0 if monostatic
+        """
+    @baseline_m.setter
+    def baseline_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def blind_zone_s(self) -> float:
+        """
+        [s] after the direct path: not judged, >= 0
+        """
+    @blind_zone_s.setter
+    def blind_zone_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def delay_offset_s(self) -> float:
+        """
+        [s] calibration, added to every delay
+        """
+    @delay_offset_s.setter
+    def delay_offset_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def first_sample_s(self) -> float:
+        """
+        [s] delay of sample 0, if recorded
+        """
+    @first_sample_s.setter
+    def first_sample_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def n_samples(self) -> int:
+        """
+        [sample] of a scan
+        """
+    @n_samples.setter
+    def n_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def node_id(self) -> int:
+        """
+        >= 0
+        """
+    @node_id.setter
+    def node_id(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def sample_rate_hz(self) -> float:
+        """
+        [Hz]
+        """
+    @sample_rate_hz.setter
+    def sample_rate_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def time_zero(self) -> TimeZero:
+        """
+        where delays are counted from
+        """
+    @time_zero.setter
+    def time_zero(self, arg0: TimeZero) -> None: ...
+
+class SensorRadarNode:
+    """
+    Raw scans in, delays of echoes from people out.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: SensorRadarNodeConfig) -> Status: ...
+    def counters(self) -> dict:
+        """
+        What happened since configure(), by name.
+        """
+    def process(
+        self, scan: numpy.typing.NDArray[numpy.float32], time_us: typing.SupportsInt | typing.SupportsIndex
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, detections): scan (n_samples,) [count]; detections is structured, delay_s and weight.
+        """
+    def process_with_taps(
+        self, scan: numpy.typing.NDArray[numpy.float32], time_us: typing.SupportsInt | typing.SupportsIndex
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void], dict]:
+        """
+        (status, detections, taps by name).
+        """
+    def ready(self) -> bool:
+        """
+        the background is known
+        """
+    def report_ready(self) -> bool:
+        """
+        the last process() completed a scan
+        """
+    def reset(self) -> None: ...
+    def set_empty_room(self, scan: numpy.typing.NDArray[numpy.float32]) -> Status:
+        """
+        scan (n_samples,) [count] of the empty room, averaged into the background
+        """
+
+class Point:
+    """
+    A position in the plane.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> Point: ...
+    def __deepcopy__(self, memo: typing.Any) -> Point: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(self, *, x_m: float = 0.0, y_m: float = 0.0) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def x_m(self) -> float:
+        """
+        [m]
+        """
+    @x_m.setter
+    def x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def y_m(self) -> float:
+        """
+        [m]
+        """
+    @y_m.setter
+    def y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Area:
+    """
+    A rectangle along the axes, edges included.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> Area: ...
+    def __deepcopy__(self, memo: typing.Any) -> Area: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self, *, min_x_m: float = 0.0, min_y_m: float = 0.0, max_x_m: float = 0.0, max_y_m: float = 0.0
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def max_x_m(self) -> float:
+        """
+        [m]
+        """
+    @max_x_m.setter
+    def max_x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_y_m(self) -> float:
+        """
+        [m]
+        """
+    @max_y_m.setter
+    def max_y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_x_m(self) -> float:
+        """
+        [m]
+        """
+    @min_x_m.setter
+    def min_x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_y_m(self) -> float:
+        """
+        [m]
+        """
+    @min_y_m.setter
+    def min_y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class NodeSite:
+    """
+    The foci of one node's ellipses; monostatic when both are in one place.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> NodeSite: ...
+    def __deepcopy__(self, memo: typing.Any) -> NodeSite: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(self, *, node_id: int = 0, tx: Point = ..., rx: Point = ...) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def node_id(self) -> int: ...
+    @node_id.setter
+    def node_id(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def rx(self) -> Point:
+        """
+        [m]
+        """
+    @rx.setter
+    def rx(self, arg0: Point) -> None: ...
+    @property
+    def tx(self) -> Point:
+        """
+        [m]
+        """
+    @tx.setter
+    def tx(self, arg0: Point) -> None: ...
+
+class EllipseRefinement:
+    """
+    Members:
+
+      gauss_newton
+
+      none
+    """
+
+    __members__: typing.ClassVar[dict[str, EllipseRefinement]]
+    gauss_newton: typing.ClassVar[EllipseRefinement]
+    none: typing.ClassVar[EllipseRefinement]
+    @typing.overload
+    def __eq__(self, other: EllipseRefinement) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: EllipseRefinement) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class EllipseConfig:
+    """
+    Intersection of ellipses (eqs. 16-23).
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    refinement: EllipseRefinement
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> EllipseConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> EllipseConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        refinement: EllipseRefinement = ...,
+        max_iterations: int = 10,
+        max_step_m: float = 1.0,
+        body_radius_m: float = 0.0,
+        robust_scale_m: float = 0.15,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def body_radius_m(self) -> float:
+        """
+        [m]
+        """
+    @body_radius_m.setter
+    def body_radius_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_iterations(self) -> int:
+        """
+        of Gauss-Newton
+        """
+    @max_iterations.setter
+    def max_iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def max_step_m(self) -> float:
+        """
+        [m]
+        """
+    @max_step_m.setter
+    def max_step_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def robust_scale_m(self) -> float:
+        """
+        [m] 0: all paths alike
+        """
+    @robust_scale_m.setter
+    def robust_scale_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class EllipseFix:
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def equation_residual_m3(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def position_m(self) -> tuple[float, float]: ...
+    @property
+    def range_residual_m(self) -> float: ...
+
+class EllipseLeastSquares:
+    def __init__(self) -> None: ...
+    def configure(self, config: EllipseConfig) -> Status: ...
+    def process(
+        self,
+        nodes: collections.abc.Sequence[NodeSite],
+        path_m: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        area: Area,
+    ) -> tuple[Status, EllipseFix]:
+        """
+        (status, EllipseFix) from one path a node.
+        """
+    def refine(
+        self,
+        nodes: collections.abc.Sequence[NodeSite],
+        path_m: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        position: Point,
+        robust: bool,
+    ) -> tuple[Status, EllipseFix]:
+        """
+        (status, EllipseFix) by Gauss-Newton from a position.
+        """
+
+class CoverageConfig:
+    """
+    Link budget of a site (section III).
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> CoverageConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> CoverageConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        transmit_power_dbm: float = -12.64,
+        noise_figure_db: float = 4.8,
+        antenna_gain_db: float = 0.0,
+        centre_hz: float = 4300000000.0,
+        bandwidth_hz: float = 2200000000.0,
+        pulse_interval_s: float = 1.1712e-07,
+        pulses_per_scan: int = 20480,
+        radar_cross_section_m2: float = 1.0,
+        noise_temperature_K: float = 290.0,
+        path_loss_exponent: float = 2.0,
+        frequency_exponent: float = 0.0,
+        excess_path_loss_1m_db: float = 0.0,
+        min_snr_db: float = 20.0,
+        blind_zone_s: float = 1.5e-09,
+        path_sigma_m: float = 0.05,
+        body_radius_m: float = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def antenna_gain_db(self) -> float: ...
+    @antenna_gain_db.setter
+    def antenna_gain_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def bandwidth_hz(self) -> float: ...
+    @bandwidth_hz.setter
+    def bandwidth_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def blind_zone_s(self) -> float: ...
+    @blind_zone_s.setter
+    def blind_zone_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def body_radius_m(self) -> float: ...
+    @body_radius_m.setter
+    def body_radius_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def centre_hz(self) -> float: ...
+    @centre_hz.setter
+    def centre_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def excess_path_loss_1m_db(self) -> float: ...
+    @excess_path_loss_1m_db.setter
+    def excess_path_loss_1m_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def frequency_exponent(self) -> float: ...
+    @frequency_exponent.setter
+    def frequency_exponent(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_snr_db(self) -> float: ...
+    @min_snr_db.setter
+    def min_snr_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def noise_figure_db(self) -> float: ...
+    @noise_figure_db.setter
+    def noise_figure_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def noise_temperature_K(self) -> float: ...
+    @noise_temperature_K.setter
+    def noise_temperature_K(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def path_loss_exponent(self) -> float: ...
+    @path_loss_exponent.setter
+    def path_loss_exponent(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def path_sigma_m(self) -> float: ...
+    @path_sigma_m.setter
+    def path_sigma_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pulse_interval_s(self) -> float: ...
+    @pulse_interval_s.setter
+    def pulse_interval_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def pulses_per_scan(self) -> int: ...
+    @pulses_per_scan.setter
+    def pulses_per_scan(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def radar_cross_section_m2(self) -> float: ...
+    @radar_cross_section_m2.setter
+    def radar_cross_section_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def transmit_power_dbm(self) -> float: ...
+    @transmit_power_dbm.setter
+    def transmit_power_dbm(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class Coverage:
+    def __init__(self) -> None: ...
+    def configure(
+        self, config: CoverageConfig, nodes: collections.abc.Sequence[NodeSite], area: Area
+    ) -> Status: ...
+    def process(
+        self, positions_m: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of CoveragePoint) of places (n, 2).
+        """
+    @property
+    def bistatic_constant(self) -> float: ...
+
+class FrameAssemblerConfig:
+    """
+    Lines up the nodes' reports.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> FrameAssemblerConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> FrameAssemblerConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        deadline_us: int = 80000,
+        dead_after_frames: int = 10,
+        resync_after_reports: int = 10,
+        max_delay_s: float = 1e-06,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def dead_after_frames(self) -> int: ...
+    @dead_after_frames.setter
+    def dead_after_frames(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def deadline_us(self) -> int:
+        """
+        [us]
+        """
+    @deadline_us.setter
+    def deadline_us(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def max_delay_s(self) -> float:
+        """
+        [s]
+        """
+    @max_delay_s.setter
+    def max_delay_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def resync_after_reports(self) -> int: ...
+    @resync_after_reports.setter
+    def resync_after_reports(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class FrameAssemblerCounters:
+    @property
+    def accepted(self) -> int: ...
+    @property
+    def doubled(self) -> int: ...
+    @property
+    def early(self) -> int: ...
+    @property
+    def frames(self) -> int: ...
+    @property
+    def late(self) -> int: ...
+    @property
+    def lost(self) -> int: ...
+    @property
+    def malformed(self) -> int: ...
+    @property
+    def resynchronised(self) -> int: ...
+    @property
+    def unknown_node(self) -> int: ...
+
+class FrameAssembler:
+    def __init__(self) -> None: ...
+    def configure(
+        self, config: FrameAssemblerConfig, nodes: collections.abc.Sequence[NodeSite]
+    ) -> Status: ...
+    def poll(self, now_us: typing.SupportsInt | typing.SupportsIndex) -> tuple:
+        """
+        (status, None or (time_us, frame, n_reported, structured array of FrameDetection)).
+        """
+    def receive(
+        self,
+        node_id: typing.SupportsInt | typing.SupportsIndex,
+        frame: typing.SupportsInt | typing.SupportsIndex,
+        delay_s: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        now_us: typing.SupportsInt | typing.SupportsIndex,
+    ) -> Status: ...
+    def reset(self) -> None: ...
+    @property
+    def counters(self) -> FrameAssemblerCounters: ...
+
+class SelectionMethod:
+    """
+    Members:
+
+      consensus
+
+      all_tuples
+    """
+
+    __members__: typing.ClassVar[dict[str, SelectionMethod]]
+    all_tuples: typing.ClassVar[SelectionMethod]
+    consensus: typing.ClassVar[SelectionMethod]
+    @typing.overload
+    def __eq__(self, other: SelectionMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: SelectionMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class SelectionResidual:
+    """
+    Members:
+
+      range_residual
+
+      equation_residual
+    """
+
+    __members__: typing.ClassVar[dict[str, SelectionResidual]]
+    equation_residual: typing.ClassVar[SelectionResidual]
+    range_residual: typing.ClassVar[SelectionResidual]
+    @typing.overload
+    def __eq__(self, other: SelectionResidual) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: SelectionResidual) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class SelectionConfig:
+    """
+    Positions from a frame's detections.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    method: SelectionMethod
+    residual: SelectionResidual
+    track_aided: bool
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> SelectionConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> SelectionConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        method: SelectionMethod = ...,
+        residual: SelectionResidual = ...,
+        nodes_per_tuple: int = 3,
+        min_weight: float = 0.0,
+        max_range_residual_m: float = 0.25,
+        max_equation_residual_m3: float = 6e-13,
+        coarse_residual_m: float = 1.0,
+        support_gate_m: float = 0.3,
+        min_support: int = 3,
+        min_support_fraction: float = 0.6,
+        min_own_support: int = 3,
+        echo_tail_m: float = 0.0,
+        track_aided: bool = True,
+        track_gate_m: float = 0.6,
+        track_min_support: int = 3,
+        track_min_own_support: int = 2,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def coarse_residual_m(self) -> float:
+        """
+        [m]
+        """
+    @coarse_residual_m.setter
+    def coarse_residual_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def echo_tail_m(self) -> float:
+        """
+        [m]
+        """
+    @echo_tail_m.setter
+    def echo_tail_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_equation_residual_m3(self) -> float:
+        """
+        [m^3]
+        """
+    @max_equation_residual_m3.setter
+    def max_equation_residual_m3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def max_range_residual_m(self) -> float:
+        """
+        [m]
+        """
+    @max_range_residual_m.setter
+    def max_range_residual_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_own_support(self) -> int:
+        """
+        nodes
+        """
+    @min_own_support.setter
+    def min_own_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def min_support(self) -> int:
+        """
+        nodes
+        """
+    @min_support.setter
+    def min_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def min_support_fraction(self) -> float:
+        """
+        of the nodes that reported
+        """
+    @min_support_fraction.setter
+    def min_support_fraction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def min_weight(self) -> float:
+        """
+        [1]
+        """
+    @min_weight.setter
+    def min_weight(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def nodes_per_tuple(self) -> int:
+        """
+        nu
+        """
+    @nodes_per_tuple.setter
+    def nodes_per_tuple(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def support_gate_m(self) -> float:
+        """
+        [m]
+        """
+    @support_gate_m.setter
+    def support_gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def track_gate_m(self) -> float:
+        """
+        [m]
+        """
+    @track_gate_m.setter
+    def track_gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def track_min_own_support(self) -> int:
+        """
+        nodes
+        """
+    @track_min_own_support.setter
+    def track_min_own_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def track_min_support(self) -> int:
+        """
+        nodes
+        """
+    @track_min_support.setter
+    def track_min_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+
+class SelectionCounters:
+    @property
+    def dropped_detections(self) -> int: ...
+    @property
+    def dropped_measurements(self) -> int: ...
+    @property
+    def dropped_tuples(self) -> int: ...
+    @property
+    def frames(self) -> int: ...
+    @property
+    def tuples(self) -> int: ...
+
+class MeasurementSelection:
+    def __init__(self) -> None: ...
+    def configure(
+        self,
+        config: SelectionConfig,
+        ellipse: EllipseConfig,
+        nodes: collections.abc.Sequence[NodeSite],
+        area: Area,
+    ) -> Status: ...
+    def process(
+        self,
+        node_index: numpy.typing.NDArray[numpy.int32],
+        path_m: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        n_reported: typing.SupportsInt | typing.SupportsIndex,
+        predictions_m: numpy.typing.NDArray[numpy.float32],
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of Measurement) of one frame; predictions_m (p, 2).
+        """
+    def reset(self) -> None: ...
+    @property
+    def counters(self) -> SelectionCounters: ...
+
+class ClusterDistance:
+    """
+    Members:
+
+      centroid
+
+      minimum
+
+      maximum
+    """
+
+    __members__: typing.ClassVar[dict[str, ClusterDistance]]
+    centroid: typing.ClassVar[ClusterDistance]
+    maximum: typing.ClassVar[ClusterDistance]
+    minimum: typing.ClassVar[ClusterDistance]
+    @typing.overload
+    def __eq__(self, other: ClusterDistance) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClusterDistance) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class PointClusterConfig:
+    """
+    Hierarchical clustering (Algorithm 2, mended).
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    distance: ClusterDistance
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> PointClusterConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> PointClusterConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(self, *, distance: ClusterDistance = ..., threshold_m: float = 0.8) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def threshold_m(self) -> float:
+        """
+        [m]
+        """
+    @threshold_m.setter
+    def threshold_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class PointClusters:
+    def __init__(self) -> None: ...
+    def configure(self, config: PointClusterConfig) -> Status: ...
+    def process(
+        self, position_m: numpy.typing.NDArray[numpy.float32], weight: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of PointCluster) of positions (n, 2).
+        """
+    @property
+    def dropped(self) -> int: ...
+
+class ResamplingChance:
+    """
+    In proportion to what particles are drawn.
+
+    Members:
+
+      square_root
+
+      proportional
+    """
+
+    __members__: typing.ClassVar[dict[str, ResamplingChance]]
+    proportional: typing.ClassVar[ResamplingChance]
+    square_root: typing.ClassVar[ResamplingChance]
+    @typing.overload
+    def __eq__(self, other: ResamplingChance) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ResamplingChance) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class PhdConfig:
+    """
+    Particle PHD filter with measurement-driven birth.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    resampling: ResamplingChance
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> PhdConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> PhdConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        detection_probability: float = 0.9,
+        survival_probability: float = 0.99,
+        clutter_per_frame: float = 2.0,
+        birth_per_frame: float = 0.02,
+        area_m2: float = 69.0,
+        measurement_std_m: float = 0.3,
+        acceleration_density_m2ps3: float = 0.1,
+        newborn_velocity_std_mps: float = 1.2,
+        particles_per_target: int = 1000,
+        newborn_per_measurement: int = 64,
+        mass_average_frames: int = 1,
+        resampling: ResamplingChance = ...,
+        seed: int = 1,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def acceleration_density_m2ps3(self) -> float:
+        """
+        [m^2/s^3]
+        """
+    @acceleration_density_m2ps3.setter
+    def acceleration_density_m2ps3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def area_m2(self) -> float:
+        """
+        [m^2]
+        """
+    @area_m2.setter
+    def area_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def birth_per_frame(self) -> float:
+        """
+        expected, uniform over the area
+        """
+    @birth_per_frame.setter
+    def birth_per_frame(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def clutter_per_frame(self) -> float:
+        """
+        expected, uniform over the area
+        """
+    @clutter_per_frame.setter
+    def clutter_per_frame(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def detection_probability(self) -> float:
+        """
+        per frame
+        """
+    @detection_probability.setter
+    def detection_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def mass_average_frames(self) -> int: ...
+    @mass_average_frames.setter
+    def mass_average_frames(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def measurement_std_m(self) -> float:
+        """
+        [m] per coordinate
+        """
+    @measurement_std_m.setter
+    def measurement_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def newborn_per_measurement(self) -> int: ...
+    @newborn_per_measurement.setter
+    def newborn_per_measurement(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def newborn_velocity_std_mps(self) -> float:
+        """
+        [m/s] per coordinate
+        """
+    @newborn_velocity_std_mps.setter
+    def newborn_velocity_std_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def particles_per_target(self) -> int: ...
+    @particles_per_target.setter
+    def particles_per_target(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def seed(self) -> int: ...
+    @seed.setter
+    def seed(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def survival_probability(self) -> float:
+        """
+        per frame
+        """
+    @survival_probability.setter
+    def survival_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class PhdFilter:
+    """
+    A frame is predict, update, resample.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: PhdConfig) -> Status: ...
+    def predict(self, dt_s: typing.SupportsFloat | typing.SupportsIndex) -> Status: ...
+    def resample(self) -> Status: ...
+    def reset(self) -> None: ...
+    def update(self, measurements: numpy.typing.NDArray[numpy.float32]) -> Status:
+        """
+        measurements (m, 2) [m]
+        """
+    @property
+    def mass(self) -> float: ...
+    @property
+    def measurement_mass(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def number(self) -> int: ...
+    @property
+    def particles(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def peak_seed(self) -> int: ...
+    @property
+    def persistent(self) -> numpy.typing.NDArray[numpy.float32]: ...
+
+class TrackState:
+    """
+    Members:
+
+      unconfirmed
+
+      confirmed
+
+      silent
+
+      dead
+    """
+
+    __members__: typing.ClassVar[dict[str, TrackState]]
+    confirmed: typing.ClassVar[TrackState]
+    dead: typing.ClassVar[TrackState]
+    silent: typing.ClassVar[TrackState]
+    unconfirmed: typing.ClassVar[TrackState]
+    @typing.overload
+    def __eq__(self, other: TrackState) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: TrackState) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class AssociationRule:
+    """
+    Which pairs of track and point hold.
+
+    Members:
+
+      per_pair
+
+      hypothesis_cost
+    """
+
+    __members__: typing.ClassVar[dict[str, AssociationRule]]
+    hypothesis_cost: typing.ClassVar[AssociationRule]
+    per_pair: typing.ClassVar[AssociationRule]
+    @typing.overload
+    def __eq__(self, other: AssociationRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: AssociationRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class TrackUpdate:
+    """
+    What a point does to its track.
+
+    Members:
+
+      estimate
+
+      kalman
+    """
+
+    __members__: typing.ClassVar[dict[str, TrackUpdate]]
+    estimate: typing.ClassVar[TrackUpdate]
+    kalman: typing.ClassVar[TrackUpdate]
+    @typing.overload
+    def __eq__(self, other: TrackUpdate) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: TrackUpdate) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class TrackManagerConfig:
+    """
+    Association, life and motion of tracks.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    association: AssociationRule
+    update: TrackUpdate
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> TrackManagerConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> TrackManagerConfig: ...
+    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __init__(
+        self,
+        *,
+        association: AssociationRule = ...,
+        update: TrackUpdate = ...,
+        gate_m: float = 1.0,
+        cost_max_m: float = 1.0,
+        gate_sigma: float = 4.0,
+        silent_gate_growth_mps: float = 0.2,
+        silent_gate_max_m: float = 1.5,
+        birth_exclusion_m: float = 0.3,
+        confirm_updates: int = 3,
+        silent_time_min_s: float = 1.0,
+        silent_time_per_confirmed: float = 1.0,
+        silent_time_max_s: float = 10.0,
+        silent_velocity_time_s: float = 0.5,
+        acceleration_density_m2ps3: float = 0.1,
+        measurement_std_m: float = 0.3,
+        velocity_std_mps: float = 1.2,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def acceleration_density_m2ps3(self) -> float:
+        """
+        [m^2/s^3]
+        """
+    @acceleration_density_m2ps3.setter
+    def acceleration_density_m2ps3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def birth_exclusion_m(self) -> float:
+        """
+        [m]
+        """
+    @birth_exclusion_m.setter
+    def birth_exclusion_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def confirm_updates(self) -> int:
+        """
+        the first point included
+        """
+    @confirm_updates.setter
+    def confirm_updates(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def cost_max_m(self) -> float:
+        """
+        [m] of hypothesis_cost
+        """
+    @cost_max_m.setter
+    def cost_max_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def gate_m(self) -> float:
+        """
+        [m]
+        """
+    @gate_m.setter
+    def gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def gate_sigma(self) -> float:
+        """
+        deviations, of kalman; 0: no test
+        """
+    @gate_sigma.setter
+    def gate_sigma(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def measurement_std_m(self) -> float:
+        """
+        [m] of kalman
+        """
+    @measurement_std_m.setter
+    def measurement_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_gate_growth_mps(self) -> float:
+        """
+        [m/s]
+        """
+    @silent_gate_growth_mps.setter
+    def silent_gate_growth_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_gate_max_m(self) -> float:
+        """
+        [m]
+        """
+    @silent_gate_max_m.setter
+    def silent_gate_max_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_time_max_s(self) -> float:
+        """
+        [s]
+        """
+    @silent_time_max_s.setter
+    def silent_time_max_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_time_min_s(self) -> float:
+        """
+        [s]
+        """
+    @silent_time_min_s.setter
+    def silent_time_min_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_time_per_confirmed(self) -> float: ...
+    @silent_time_per_confirmed.setter
+    def silent_time_per_confirmed(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def silent_velocity_time_s(self) -> float:
+        """
+        [s]
+        """
+    @silent_velocity_time_s.setter
+    def silent_velocity_time_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def velocity_std_mps(self) -> float:
+        """
+        [m/s]
+        """
+    @velocity_std_mps.setter
+    def velocity_std_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+
+class TrackManager:
+    """
+    Tracks from the points of each frame.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: TrackManagerConfig) -> Status: ...
+    def process(
+        self, points: numpy.typing.NDArray[numpy.float32], dt_s: typing.SupportsFloat | typing.SupportsIndex
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of Track) of points (n, 7): x, y, vx, vy, covariance xx, xy, yy.
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+    @property
+    def point_of_track(self) -> numpy.typing.NDArray[numpy.int32]: ...
+
+class PhdTracker:
+    """
+    Particle PHD filter, its peaks, tracks.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, phd: PhdConfig, em: MixtureConfig, tracks: TrackManagerConfig) -> Status: ...
+    def process(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, structured array of Track) of measurements (m, 2) [m].
+        """
+    def process_with_taps(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, tracks, taps): taps by TapId, each (n, columns).
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+    @property
+    def mass(self) -> float: ...
+
+class KalmanTracker:
+    """
+    A Kalman filter a track and global nearest neighbour.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: TrackManagerConfig) -> Status: ...
+    def process(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, structured array of Track) of measurements (m, 2) [m].
+        """
+    def process_with_taps(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, tracks, taps): taps by TapId, each (n, columns).
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+
+def assign(cost: numpy.typing.NDArray[numpy.float32]) -> tuple[Status, numpy.typing.NDArray[numpy.int32]]:
+    """
+    (status, column of each row or -1) of the least total cost.
+    """
+
+def cassini_ratio(
+    to_tx_m: typing.SupportsFloat | typing.SupportsIndex,
+    to_rx_m: typing.SupportsFloat | typing.SupportsIndex,
+    baseline_m: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def gaussian_kernel(
+    squared_distance: numpy.typing.NDArray[numpy.float32],
+) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    exp(-d^2 / 2) of each squared distance (n,), 0 beyond 25.
+    """
+
+def invalid_site(nodes: collections.abc.Sequence[NodeSite], area: Area) -> typing.Any:
+    """
+    "n_nodes", "nodes" or "area": what makes locating impossible; or None.
+    """
+
+def leg_product_m2(
+    sum_m: typing.SupportsFloat | typing.SupportsIndex,
+    baseline_m: typing.SupportsFloat | typing.SupportsIndex,
+    bistatic_angle_rad: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def max_leg_product_m2(
+    bistatic_constant_m4: typing.SupportsFloat | typing.SupportsIndex,
+    min_snr: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def path_length(
+    position: Point, tx: Point, rx: Point, body_radius_m: typing.SupportsFloat | typing.SupportsIndex
+) -> tuple[float, float, float]:
+    """
+    (path [m], its derivatives with respect to x and y).
+    """
+
+def rectify(samples: numpy.typing.NDArray[numpy.float32]) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    Half-wave rectifier: a new array, negative values 0.
+    """
+
+def snr(
+    bistatic_constant_m4: typing.SupportsFloat | typing.SupportsIndex,
+    to_tx_m: typing.SupportsFloat | typing.SupportsIndex,
+    to_rx_m: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def snr_on_ellipse(
+    bistatic_constant_m4: typing.SupportsFloat | typing.SupportsIndex,
+    sum_m: typing.SupportsFloat | typing.SupportsIndex,
+    baseline_m: typing.SupportsFloat | typing.SupportsIndex,
+    bistatic_angle_rad: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def sum_on_cassini_m(
+    bistatic_constant_m4: typing.SupportsFloat | typing.SupportsIndex,
+    snr: typing.SupportsFloat | typing.SupportsIndex,
+    baseline_m: typing.SupportsFloat | typing.SupportsIndex,
+    bistatic_angle_rad: typing.SupportsFloat | typing.SupportsIndex,
+) -> float: ...
+def systematic_resample(
+    weights: numpy.typing.NDArray[numpy.float32],
+    uniform: typing.SupportsFloat | typing.SupportsIndex,
+    n_out: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[Status, numpy.typing.NDArray[numpy.uint16]]:
+    """
+    (status, indices (n_out,)).
+    """
+
+def time_of_arrival_s(
+    to_tx_m: typing.SupportsFloat | typing.SupportsIndex, to_rx_m: typing.SupportsFloat | typing.SupportsIndex
+) -> float: ...
+
+LIMITS: dict = {
+    "max_samples_per_scan": 1920,
+    "max_hits_per_scan": 1920,
+    "max_clusters_per_scan": 64,
+    "max_detections_per_node": 16,
+    "max_nodes": 16,
+    "max_frame_history": 8,
+    "max_tuples_per_frame": 4096,
+    "max_measurements_per_frame": 256,
+    "max_points_per_frame": 32,
+    "max_targets": 16,
+    "max_tracks": 24,
+    "max_particles": 2048,
+    "max_newborn_particles": 1024,
+    "max_assignment": 32,
+}
+SENSOR_RADAR_NODE_BYTES: int = 65888
