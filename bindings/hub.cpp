@@ -1,11 +1,14 @@
-#include "common.hpp"
+#include "hub.hpp"
 
 #include <vector>
 
+#include "echofuse/hub/locate/coverage.hpp"
 #include "echofuse/hub/locate/ellipse_least_squares.hpp"
 #include "echofuse/hub/locate/site.hpp"
+#include "echofuse/hub/measure/frame_assembler.hpp"
 #include "echofuse/hub/measure/measurement_selection.hpp"
 #include "echofuse/hub/measure/point_clusters.hpp"
+#include "tracks.hpp"
 
 namespace echofuse::bindings {
 
@@ -104,6 +107,118 @@ void bind_ellipse(py::module_& m) {
           },
           py::arg("nodes"), py::arg("path_m").noconvert(), py::arg("weight").noconvert(), py::arg("position"),
           py::arg("robust"), "(status, EllipseFix) by Gauss-Newton from a position.");
+}
+
+void bind_coverage(py::module_& m) {
+  using hub::Coverage;
+  using hub::CoverageConfig;
+  using hub::CoveragePoint;
+  PYBIND11_NUMPY_DTYPE(CoveragePoint, n_covering, n_blind, best_snr_db, third_snr_db, position_error_bound_m);
+  ConfigBinder<CoverageConfig>(m, "CoverageConfig", "Link budget of a site (section III).")
+      .field("transmit_power_dbm", &CoverageConfig::transmit_power_dbm)
+      .field("noise_figure_db", &CoverageConfig::noise_figure_db)
+      .field("antenna_gain_db", &CoverageConfig::antenna_gain_db)
+      .field("centre_hz", &CoverageConfig::centre_hz)
+      .field("bandwidth_hz", &CoverageConfig::bandwidth_hz)
+      .field("pulse_interval_s", &CoverageConfig::pulse_interval_s)
+      .field("pulses_per_scan", &CoverageConfig::pulses_per_scan)
+      .field("radar_cross_section_m2", &CoverageConfig::radar_cross_section_m2)
+      .field("noise_temperature_K", &CoverageConfig::noise_temperature_K)
+      .field("path_loss_exponent", &CoverageConfig::path_loss_exponent)
+      .field("frequency_exponent", &CoverageConfig::frequency_exponent)
+      .field("excess_path_loss_1m_db", &CoverageConfig::excess_path_loss_1m_db)
+      .field("min_snr_db", &CoverageConfig::min_snr_db)
+      .field("blind_zone_s", &CoverageConfig::blind_zone_s)
+      .field("path_sigma_m", &CoverageConfig::path_sigma_m)
+      .field("body_radius_m", &CoverageConfig::body_radius_m);
+  m.def("cassini_ratio", &hub::cassini_ratio, py::arg("to_tx_m"), py::arg("to_rx_m"), py::arg("baseline_m"));
+  m.def("leg_product_m2", &hub::leg_product_m2, py::arg("sum_m"), py::arg("baseline_m"),
+        py::arg("bistatic_angle_rad"));
+  m.def("snr", &hub::snr, py::arg("bistatic_constant_m4"), py::arg("to_tx_m"), py::arg("to_rx_m"));
+  m.def("snr_on_ellipse", &hub::snr_on_ellipse, py::arg("bistatic_constant_m4"), py::arg("sum_m"),
+        py::arg("baseline_m"), py::arg("bistatic_angle_rad"));
+  m.def("sum_on_cassini_m", &hub::sum_on_cassini_m, py::arg("bistatic_constant_m4"), py::arg("snr"),
+        py::arg("baseline_m"), py::arg("bistatic_angle_rad"));
+  m.def("max_leg_product_m2", &hub::max_leg_product_m2, py::arg("bistatic_constant_m4"), py::arg("min_snr"));
+  m.def("time_of_arrival_s", &hub::time_of_arrival_s, py::arg("to_tx_m"), py::arg("to_rx_m"));
+  py::class_<Coverage>(m, "Coverage")
+      .def(py::init<>())
+      .def(
+          "configure",
+          [](Coverage& self, const CoverageConfig& config, const std::vector<NodeSite>& nodes, const Area& area) {
+            return self.configure(config, {nodes.data(), nodes.size()}, area);
+          },
+          py::arg("config"), py::arg("nodes"), py::arg("area"))
+      .def_property_readonly("bistatic_constant", &Coverage::bistatic_constant)
+      .def(
+          "process",
+          [](const Coverage& self, const FloatArray& positions) {
+            const auto rows = as_span_of_rows(positions, 2, "positions_m");
+            std::vector<CoveragePoint> results(rows.size() / 2);
+            Status worst = Status::kOk;
+            for (std::size_t i = 0; i < results.size(); ++i) {
+              const Status status = self.process({rows[2 * i], rows[2 * i + 1]}, results[i]);
+              if (status != Status::kOk) worst = status;
+            }
+            return py::make_tuple(worst, to_array(Span<const CoveragePoint>(results.data(), results.size())));
+          },
+          py::arg("positions_m").noconvert(), "(status, structured array of CoveragePoint) of places (n, 2).");
+}
+
+void bind_frame_assembler(py::module_& m) {
+  using hub::FrameAssembler;
+  using hub::FrameAssemblerConfig;
+  using hub::FrameAssemblerCounters;
+  PYBIND11_NUMPY_DTYPE(hub::FrameDetection, node_index, path_m, weight);
+  ConfigBinder<FrameAssemblerConfig>(m, "FrameAssemblerConfig", "Lines up the nodes' reports.")
+      .field("deadline_us", &FrameAssemblerConfig::deadline_us, "[us]")
+      .field("dead_after_frames", &FrameAssemblerConfig::dead_after_frames)
+      .field("resync_after_reports", &FrameAssemblerConfig::resync_after_reports)
+      .field("max_delay_s", &FrameAssemblerConfig::max_delay_s, "[s]");
+  py::class_<FrameAssemblerCounters>(m, "FrameAssemblerCounters")
+      .def_readonly("accepted", &FrameAssemblerCounters::accepted)
+      .def_readonly("late", &FrameAssemblerCounters::late)
+      .def_readonly("early", &FrameAssemblerCounters::early)
+      .def_readonly("doubled", &FrameAssemblerCounters::doubled)
+      .def_readonly("malformed", &FrameAssemblerCounters::malformed)
+      .def_readonly("unknown_node", &FrameAssemblerCounters::unknown_node)
+      .def_readonly("lost", &FrameAssemblerCounters::lost)
+      .def_readonly("resynchronised", &FrameAssemblerCounters::resynchronised)
+      .def_readonly("frames", &FrameAssemblerCounters::frames);
+  py::class_<FrameAssembler>(m, "FrameAssembler")
+      .def(py::init<>())
+      .def(
+          "configure",
+          [](FrameAssembler& self, const FrameAssemblerConfig& config, const std::vector<NodeSite>& nodes) {
+            return self.configure(config, {nodes.data(), nodes.size()});
+          },
+          py::arg("config"), py::arg("nodes"))
+      .def("reset", &FrameAssembler::reset)
+      .def_property_readonly("counters", &FrameAssembler::counters)
+      .def(
+          "receive",
+          [](FrameAssembler& self, std::int32_t node_id, std::uint32_t frame, const FloatArray& delay,
+             const FloatArray& weight, std::int64_t now_us) {
+            link::Detections report;
+            report.node_id = node_id;
+            report.frame = frame;
+            report.time_us = now_us;
+            fill_detections(report, delay, weight);
+            return self.receive(report, now_us);
+          },
+          py::arg("node_id"), py::arg("frame"), py::arg("delay_s").noconvert(), py::arg("weight").noconvert(),
+          py::arg("now_us"))
+      .def(
+          "poll",
+          [](FrameAssembler& self, std::int64_t now_us) -> py::tuple {
+            hub::Frame frame;
+            bool closed = false;
+            const Status status = self.poll(now_us, frame, closed);
+            if (!closed) return py::make_tuple(status, py::none());
+            return py::make_tuple(status, py::make_tuple(frame.time_us, frame.frame, frame.n_reported,
+                                                         to_array(frame.detections)));
+          },
+          py::arg("now_us"), "(status, None or (time_us, frame, n_reported, structured array of FrameDetection)).");
 }
 
 void bind_selection(py::module_& m) {
@@ -214,8 +329,12 @@ void bind_point_clusters(py::module_& m) {
 void bind_hub(py::module_& m) {
   bind_site(m);
   bind_ellipse(m);
+  bind_coverage(m);
+  bind_frame_assembler(m);
   bind_selection(m);
   bind_point_clusters(m);
+  bind_hub_track(m);
+  bind_hub_pipeline(m);
 }
 
 }  // namespace echofuse::bindings

@@ -46,6 +46,9 @@ struct SelectionConfig {
 
 const char* invalid_field(const SelectionConfig& config);
 
+/// Can it work on these nodes: enough of them for a tuple, and for kEquationResidual all with one transmitter.
+bool suits(const SelectionConfig& config, Span<const NodeSite> nodes);
+
 struct Measurement {
   float x_m = 0.0f;               ///< [m]
   float y_m = 0.0f;               ///< [m]

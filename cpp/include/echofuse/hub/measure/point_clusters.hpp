@@ -41,11 +41,14 @@ class PointClusters {
   /// kInvalidConfig: the earlier configuration stays in force.
   Status configure(const PointClusterConfig& config);
 
+  void reset() { dropped_ = 0; }
+
   /// clusters: cleared, then filled in the order of their first members. kTruncated: it is full, and the
-  /// clusters of the least weight were left out (dropped() of them, since configure).
+  /// clusters of the least weight were left out (counted by dropped()).
   /// kInvalidInput: more than kMaxMeasurementsPerFrame measurements, or one is not finite.
   Status process(Span<const Measurement> measurements, BoundedVector<PointCluster>& clusters);
 
+  /// Clusters left out since configure() or reset().
   std::uint64_t dropped() const { return dropped_; }
 
  private:

@@ -61,14 +61,19 @@ const char* invalid_field(const SelectionConfig& config) {
   return nullptr;
 }
 
+bool suits(const SelectionConfig& config, Span<const NodeSite> nodes) {
+  if (config.nodes_per_tuple > static_cast<int>(nodes.size())) return false;
+  if (config.residual == SelectionResidual::kRangeResidual) return true;
+  for (const NodeSite& node : nodes)
+    if (node.tx.x_m != nodes[0].tx.x_m || node.tx.y_m != nodes[0].tx.y_m) return false;
+  return true;
+}
+
 Status MeasurementSelection::configure(const SelectionConfig& config, const EllipseConfig& ellipse,
                                        Span<const NodeSite> nodes, const Area& area) {
   if (invalid_field(config) != nullptr || invalid_field(ellipse) != nullptr) return Status::kInvalidConfig;
   if (invalid_site(nodes, area) != nullptr) return Status::kInvalidConfig;
-  if (config.nodes_per_tuple > static_cast<int>(nodes.size())) return Status::kInvalidConfig;
-  if (config.residual == SelectionResidual::kEquationResidual)
-    for (const NodeSite& node : nodes)
-      if (node.tx.x_m != nodes[0].tx.x_m || node.tx.y_m != nodes[0].tx.y_m) return Status::kInvalidConfig;
+  if (!suits(config, nodes)) return Status::kInvalidConfig;
   const Status status = ellipse_.configure(ellipse);
   if (status != Status::kOk) return status;
   config_ = config;

@@ -22,7 +22,7 @@ Status PointClusters::configure(const PointClusterConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   configured_ = true;
-  dropped_ = 0;
+  reset();
   return Status::kOk;
 }
 

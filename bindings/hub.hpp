@@ -1,0 +1,20 @@
+#pragma once
+
+#include "common.hpp"
+#include "echofuse/link/messages.hpp"
+
+namespace echofuse::bindings {
+
+void bind_hub_pipeline(py::module_& m);
+
+/// ValueError when the arrays differ or hold more than one report can.
+inline void fill_detections(link::Detections& report, const FloatArray& delay, const FloatArray& weight) {
+  const auto delays = as_span(delay, "delay_s");
+  const auto weights = as_span(weight, "weight");
+  if (delays.size() != weights.size()) throw py::value_error("delay_s and weight must have the same length");
+  for (std::size_t i = 0; i < delays.size(); ++i)
+    if (!report.detections.try_push_back({delays[i], weights[i]}))
+      throw py::value_error("a report carries at most " + std::to_string(kMaxDetectionsPerNode) + " detections");
+}
+
+}  // namespace echofuse::bindings

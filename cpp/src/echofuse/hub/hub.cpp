@@ -1,0 +1,152 @@
+#include "echofuse/hub/hub.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echofuse/core/constants.hpp"
+
+namespace echofuse::hub {
+
+const char* invalid_field(const SensorRadarHubConfig& config) {
+  if (config.n_nodes < 3 || config.n_nodes > static_cast<int>(kMaxNodes)) return "n_nodes";
+  const Span<const NodeSite> nodes{config.nodes.data(), static_cast<std::size_t>(config.n_nodes)};
+  if (const char* field = invalid_site(nodes, config.area); field != nullptr) return field;
+  if (!(config.frame_period_s > 0.0f && std::isfinite(config.frame_period_s))) return "frame_period_s";
+  if (config.aid_missed_frames < 0) return "aid_missed_frames";
+  if (config.tracker > Tracker::kKalman) return "tracker";
+  if (invalid_field(config.frame_assembler) != nullptr) return "frame_assembler";
+  if (invalid_field(config.ellipse) != nullptr) return "ellipse";
+  if (invalid_field(config.selection) != nullptr || !suits(config.selection, nodes)) return "selection";
+  if (invalid_field(config.point_clusters) != nullptr) return "point_clusters";
+  if (invalid_field(config.phd) != nullptr) return "phd";
+  if (invalid_field(config.em) != nullptr) return "em";
+  if (invalid_field(config.tracks) != nullptr) return "tracks";
+  return nullptr;
+}
+
+Status SensorRadarHub::configure(const SensorRadarHubConfig& config) {
+  if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
+  config_ = config;
+  const Span<const NodeSite> nodes{config_.nodes.data(), static_cast<std::size_t>(config.n_nodes)};
+  const std::array<Status, 5> made{frame_assembler_.configure(config.frame_assembler, nodes),
+                                   selection_.configure(config.selection, config.ellipse, nodes, config.area),
+                                   point_clusters_.configure(config.point_clusters),
+                                   phd_tracker_.configure(config.phd, config.em, config.tracks),
+                                   kalman_tracker_.configure(config.tracks)};
+  for (const Status status : made) ECHOFUSE_CHECK(status == Status::kOk);  // invalid_field() saw to it
+  configured_ = true;
+  reset();
+  return Status::kOk;
+}
+
+void SensorRadarHub::reset() {
+  frame_assembler_.reset();
+  selection_.reset();
+  point_clusters_.reset();
+  phd_tracker_.reset();
+  kalman_tracker_.reset();
+  known_.clear();
+  first_frame_ = true;
+  clock_faults_ = 0;
+}
+
+void SensorRadarHub::set_tap_sink(const TapSink& sink) {
+  taps_ = sink;
+  phd_tracker_.set_tap_sink(sink);
+  kalman_tracker_.set_tap_sink(sink);
+}
+
+Status SensorRadarHub::receive(const link::Detections& report, std::int64_t now_us) {
+  if (!configured_) return Status::kNotConfigured;
+  return frame_assembler_.receive(report, now_us);
+}
+
+Status SensorRadarHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& closed) {
+  closed = false;
+  tracks.tracks.clear();
+  if (!configured_) return Status::kNotConfigured;
+  if (const Status status = frame_assembler_.poll(now_us, frame_, closed); status != Status::kOk || !closed)
+    return status;
+  tap_frame();
+  const float dt_s = step_s(frame_.time_us);
+
+  BoundedVector<Point, kMaxTracks> people;
+  predict_people(dt_s, people);
+  const Status selected =
+      selection_.process(frame_.detections.span(), frame_.n_reported, people.span(), measurements_);
+  tap_selected();
+
+  const Status clustered = point_clusters_.process(measurements_.span(), points_);
+  tap_points();
+
+  BoundedVector<estimation::Position, kMaxPointsPerFrame> positions;
+  for (const PointCluster& point : points_) ECHOFUSE_CHECK(positions.try_push_back({point.x_m, point.y_m}));
+  const Status tracked = config_.tracker == Tracker::kPhd
+                             ? phd_tracker_.process(positions.span(), dt_s, tracks)
+                             : kalman_tracker_.process(positions.span(), dt_s, tracks);
+  tracks.time_us = frame_.time_us;
+  tracks.frame = frame_.frame;
+  known_.clear();
+  for (const link::Track& track : tracks.tracks) ECHOFUSE_CHECK(known_.try_push_back(track));
+  for (const Status status : {selected, clustered, tracked})
+    if (status != Status::kOk) return status;
+  return Status::kOk;
+}
+
+/// [s] since the last frame.
+float SensorRadarHub::step_s(std::int64_t time_us) {
+  const std::int64_t step_us = time_us - last_time_us_;
+  const bool first = first_frame_;
+  last_time_us_ = time_us;
+  first_frame_ = false;
+  if (first) return config_.frame_period_s;
+  if (step_us > 0) return static_cast<float>(step_us) * kSecondsPerMicrosecond;
+  ++clock_faults_;
+  return config_.frame_period_s;
+}
+
+/// Where the known people should be by now.
+void SensorRadarHub::predict_people(float dt_s, BoundedVector<Point>& people) const {
+  for (const link::Track& track : known_) {
+    if (track.state == link::TrackState::kUnconfirmed) continue;
+    if (track.frames_since_update > config_.aid_missed_frames) continue;
+    ECHOFUSE_CHECK(people.try_push_back({track.x_m + dt_s * track.vx_mps, track.y_m + dt_s * track.vy_mps}));
+  }
+}
+
+SensorRadarHubCounters SensorRadarHub::counters() const {
+  const TrackManager& manager =
+      config_.tracker == Tracker::kPhd ? phd_tracker_.manager() : kalman_tracker_.manager();
+  return {frame_assembler_.counters(), selection_.counters(), point_clusters_.dropped(),
+          manager.dropped_births(), clock_faults_};
+}
+
+void SensorRadarHub::tap_frame() const {
+  if (!taps_.enabled()) return;
+  std::array<float, 3 * kMaxFrameDetections> rows;
+  std::size_t n = 0;
+  for (const FrameDetection& d : frame_.detections)
+    for (const float value : {static_cast<float>(d.node_index), d.path_m, d.weight}) rows[n++] = value;
+  taps_(TapId::kFrame, {rows.data(), n});
+}
+
+void SensorRadarHub::tap_selected() const {
+  if (!taps_.enabled()) return;
+  std::array<float, 5 * kMaxMeasurementsPerFrame> rows;
+  std::size_t n = 0;
+  for (const Measurement& m : measurements_)
+    for (const float value : {m.x_m, m.y_m, m.weight, m.range_residual_m, static_cast<float>(m.n_nodes)})
+      rows[n++] = value;
+  taps_(TapId::kSelected, {rows.data(), n});
+}
+
+void SensorRadarHub::tap_points() const {
+  if (!taps_.enabled()) return;
+  std::array<float, 4 * kMaxPointsPerFrame> rows;
+  std::size_t n = 0;
+  for (const PointCluster& p : points_)
+    for (const float value : {p.x_m, p.y_m, static_cast<float>(p.members), p.weight}) rows[n++] = value;
+  taps_(TapId::kPoints, {rows.data(), n});
+}
+
+}  // namespace echofuse::hub
