@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from echofuse.recording import Recording
+    from echofuse.recording import Outputs, Recording
     from echofuse.site import Site
 
 #: One row a detection: what a node reported. `node` indexes `Recording.nodes`.
@@ -43,7 +43,9 @@ class NodeStack:
 
     residual: NDArray[np.float32]  # (n_scans, n_samples) rectified amplitude after clutter removal [count]
     decisions: NDArray[np.uint8]  # (n_scans, n_samples) detector output
-    clusters: list[NDArray[np.float32]]  # per scan (n_clusters, 4) position [sample], weight, first, last sample
+    clusters: list[
+        NDArray[np.float32]
+    ]  # per scan (n_clusters, 4) position [sample], weight, first, last sample
     delay_s: NDArray[np.float64]  # (n_samples,) propagation delay Tx -> person -> Rx of each sample [s]
 
 
@@ -63,4 +65,28 @@ class RunResult:
     counters: dict[str, dict[str, int]]  # "hub" and each node's name -> counter -> count
     stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
     shown_frame: int = 0  # the frame whose stages the report shows
-    shown_taps: dict[str, dict[str, NDArray[Any]]] = field(default_factory=dict)  # node name -> tap name -> values
+    shown_taps: dict[str, dict[str, NDArray[Any]]] = field(
+        default_factory=dict
+    )  # node name -> tap name -> values
+
+    def outputs(self) -> "Outputs":
+        """Return what a recording keeps of this run, each frame with its hash."""
+        from echofuse.recording import Outputs, frame_digest
+
+        frames = np.arange(len(self.frame_time_us) + 1)
+        starts = [np.searchsorted(table["frame"], frames) for table in (self.detections, self.tracks)]
+        digests = [
+            frame_digest(
+                int(time_us),
+                self.detections[starts[0][frame] : starts[0][frame + 1]],
+                self.tracks[starts[1][frame] : starts[1][frame + 1]],
+            )
+            for frame, time_us in enumerate(self.frame_time_us)
+        ]
+        return Outputs(
+            target="inprocess",
+            frame_time_us=self.frame_time_us,
+            frame_hash=np.frombuffer(b"".join(digests), np.uint8).reshape(-1, 32),
+            detections=self.detections,
+            tracks=self.tracks,
+        )

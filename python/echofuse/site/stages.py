@@ -11,7 +11,7 @@ import numpy as np
 
 from echofuse.site.tables import Problems, finite_number, suggestion
 
-__all__ = ["PIPELINES", "Config", "PipelineKind", "apply_settings", "check_settings"]
+__all__ = ["PIPELINES", "Config", "PipelineKind", "PlanConfig", "apply_settings", "check_settings"]
 
 #: What the recording or the nodes of the site say; a stage setting may not contradict them.
 MEASURED = frozenset(
@@ -31,6 +31,23 @@ class Config(Protocol):
         ...
 
 
+class PlanConfig:
+    """What `echofuse plan` reads of [pipeline]: the table of the link budget."""
+
+    def __init__(self) -> None:
+        from echofuse import _core
+
+        self.coverage = _core.CoverageConfig()
+
+    def fields(self) -> tuple[str, ...]:
+        """Return the names of all fields."""
+        return ("coverage",)
+
+    def invalid_field(self) -> str | None:
+        """Return the name of the first field with an impossible value."""
+        return None if self.coverage.invalid_field() is None else "coverage"
+
+
 @dataclass(frozen=True)
 class PipelineKind:
     """Which compiled classes configure a pipeline, and how many nodes it needs."""
@@ -39,11 +56,11 @@ class PipelineKind:
     hub_config: str
     least_nodes: int
 
-    def default_configs(self) -> tuple[Config, Config]:
-        """Return the configurations of a node and of the hub, as C++ defaults them."""
+    def default_configs(self) -> tuple[Config, ...]:
+        """Return the configurations of a node, of the hub and of a plan, as C++ defaults them."""
         from echofuse import _core
 
-        return getattr(_core, self.node_config)(), getattr(_core, self.hub_config)()
+        return getattr(_core, self.node_config)(), getattr(_core, self.hub_config)(), PlanConfig()
 
 
 PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarHubConfig", least_nodes=3)}
@@ -52,7 +69,7 @@ PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarH
 def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], problems: Problems) -> None:
     """Report every setting that no configuration knows, of a wrong type, or with an impossible value.
 
-    A key is looked up in `configs` in order: first the node's, then the hub's. What is right is set on them.
+    A key is looked up in `configs` in order: first the node's, then the hub's, then a plan's. What is right is set on them.
     """
     known = [field for config in configs for field in config.fields() if field not in MEASURED]
     own: list[dict[str, Any]] = [{} for _ in configs]

@@ -1,0 +1,299 @@
+"""Streams scans through the compiled nodes and hub, in the order of their times: the `inprocess` target.
+
+Every decision is the library's; Python only carries scans in and tables out.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echofuse import _core
+from echofuse.display.progress import progress
+from echofuse.errors import InputError, problem
+from echofuse.metrics import measure
+from echofuse.recording import NodeRecording, Recording
+from echofuse.result import DETECTION_DTYPE, POINT_DTYPE, TRACK_DTYPE, NodeStack, RunResult
+from echofuse.site import Site, SiteNode, apply_settings
+
+SPEED_OF_LIGHT_MPS = 299_792_458.0
+LAST_DEADLINE_US = 10_000_000  # after the last scan, so that the frames still open close
+
+Taps = dict[str, NDArray[np.float32]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scan:
+    """One scan on its way to its node."""
+
+    time_us: int
+    node: int  # index into the recording's nodes
+    index: int  # index into that node's scans
+
+
+@dataclass(frozen=True, kw_only=True)
+class NodeOutput:
+    """What one node said about one scan."""
+
+    detections: NDArray[np.void]  # delay_s, weight
+    taps: Taps = field(default_factory=dict)  # when asked for
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameOutput:
+    """What the hub said about one frame."""
+
+    time_us: int
+    points: NDArray[np.float32]  # (n, 4) x [m], y [m], members, weight
+    tracks: NDArray[np.void]
+
+
+def scans_in_time_order(nodes: Sequence[NodeRecording]) -> list[Scan]:
+    """Return the scans of all nodes by time, nodes that share a time in their own order."""
+    return sorted(
+        (
+            Scan(time_us=round(float(time_s) * 1e6), node=node, index=index)
+            for node, recording in enumerate(nodes)
+            for index, time_s in enumerate(recording.time_s)
+        ),
+        key=lambda scan: (scan.time_us, scan.node),
+    )
+
+
+def node_config(site: Site, place: SiteNode, source: NodeRecording) -> "_core.SensorRadarNodeConfig":
+    """Return a node's configuration: what its recording says, then [pipeline], then its own table."""
+    config = _core.SensorRadarNodeConfig()
+    config.node_id = source.node_id
+    config.n_samples = source.scans.shape[1]
+    config.sample_rate_hz = source.sample_rate_hz
+    config.first_sample_s = source.first_sample_s
+    config.baseline_m = math.dist(place.tx_position_m, place.rx_position_m)
+    apply_settings(config, site.settings)
+    apply_settings(config, place.settings())
+    return config
+
+
+def hub_config(site: Site) -> "_core.SensorRadarHubConfig":
+    """Return the hub's configuration: the geometry of the site, then [pipeline]."""
+    config = _core.SensorRadarHubConfig()
+    config.set_nodes(
+        [node.id for node in site.nodes],
+        np.array([node.tx_position_m[:2] for node in site.nodes], np.float32),
+        np.array([node.rx_position_m[:2] for node in site.nodes], np.float32),
+    )
+    x_min, y_min, x_max, y_max = site.bounds_m
+    config.set_area(x_min, y_min, x_max, y_max)
+    config.phd.area_m2 = (x_max - x_min) * (y_max - y_min)
+    apply_settings(config, site.settings)
+    return config
+
+
+class SensorRadar:
+    """Nodes and hub of one site, fed scan by scan."""
+
+    def __init__(self, site: Site, sources: Sequence[NodeRecording]) -> None:
+        self._sources = tuple(sources)
+        places = {place.id: place for place in site.nodes}
+        if not any(source.node_id in places for source in sources):
+            found = ", ".join(str(source.node_id) for source in sources)
+            known = ", ".join(map(str, places))
+            raise InputError(problem(site.name, "node.id", f"ids of the recording's nodes ({found})", known))
+        self._nodes = [
+            _configured_node(site, places[source.node_id], source) if source.node_id in places else None
+            for source in sources
+        ]
+        config = hub_config(site)
+        self.hub = _core.SensorRadarHub()
+        if self.hub.configure(config) != _core.Status.ok:
+            raise InputError(problem(site.name, f"pipeline.{config.invalid_field()}", "a possible value"))
+
+    def scan(self, scan: Scan, samples: NDArray[Any], *, taps: bool = False) -> NodeOutput:
+        """Give a node its next scan (n_samples,) [count], and the hub what the node reports.
+
+        A node that the site does not know processes nothing; the hub counts its report as a stranger's.
+        """
+        node, source = self._nodes[scan.node], self._sources[scan.node]
+        if node is None:
+            self._report(source.node_id, scan.index, np.empty(0, NO_DETECTIONS), scan.time_us)
+            return NodeOutput(detections=np.empty(0, NO_DETECTIONS))
+        values = np.ascontiguousarray(samples, np.float32)
+        tapped: Taps = {}
+        if taps:
+            status, detections, tapped = node.process_with_taps(values, scan.time_us)
+        else:
+            status, detections = node.process(values, scan.time_us)
+        if status != _core.Status.invalid_input and node.report_ready():
+            self._report(source.node_id, scan.index, detections, scan.time_us)
+        return NodeOutput(detections=detections, taps=tapped)
+
+    def frames(self, now_us: int) -> Iterator[FrameOutput]:
+        """Yield the frames that are closed at a time of the hub."""
+        while True:
+            _, closed, taps = self.hub.poll_with_taps(now_us)
+            if closed is None:
+                return
+            time_us, _, tracks = closed
+            yield FrameOutput(time_us=time_us, points=taps["points"], tracks=tracks)
+
+    def counters(self) -> dict[str, dict[str, int]]:
+        """Return what hub and nodes counted, by name."""
+        known = zip(self._sources, self._nodes, strict=True)
+        return {"hub": self.hub.counters()} | {
+            source.name: node.counters() for source, node in known if node is not None
+        }
+
+    def _report(self, node_id: int, frame: int, detections: NDArray[np.void], now_us: int) -> None:
+        delay_s, weight = (
+            np.ascontiguousarray(detections[name], np.float32) for name in ("delay_s", "weight")
+        )
+        # The hub counts what it does not take; there is nothing to do about it here.
+        self.hub.receive(node_id, frame, delay_s, weight, now_us)
+
+
+NO_DETECTIONS = np.dtype([("delay_s", "f4"), ("weight", "f4")])
+
+
+def process_recording(recording: Recording, site: Site, *, taps: bool = False) -> RunResult:
+    """Run a recording through its pipeline; with `taps`, keep the stages for the report's pictures."""
+    if recording.pipeline != site.pipeline:
+        raise InputError(
+            problem(
+                site.name, "pipeline.name", f"the recording's pipeline '{recording.pipeline}'", site.pipeline
+            )
+        )
+    radar = SensorRadar(site, recording.nodes)
+    tables = _Tables(recording, hub_config(site).tracks)
+    order = scans_in_time_order(recording.nodes)
+    shown = _shown_scan(recording) if taps else -1
+    for scan in progress(order, "processing", len(order)):
+        for frame in radar.frames(scan.time_us):
+            tables.add_frame(frame)
+        samples = recording.nodes[scan.node].scans[scan.index]
+        output = radar.scan(scan, samples, taps=taps)
+        tables.add_scan(scan, output, shown=scan.index == shown)
+    end_us = (order[-1].time_us if order else 0) + LAST_DEADLINE_US
+    for frame in radar.frames(end_us):
+        tables.add_frame(frame)
+    result = tables.result(site, radar.counters(), shown)
+    measure(result)
+    return result
+
+
+def _configured_node(site: Site, place: SiteNode, source: NodeRecording) -> "_core.SensorRadarNode":
+    config = node_config(site, place, source)
+    node = _core.SensorRadarNode()
+    if node.configure(config) != _core.Status.ok:
+        key = config.invalid_field()
+        raise InputError(
+            problem(
+                site.name,
+                f"node {source.name}: {key}",
+                f"what scans of {source.scans.shape[1]} samples at {source.sample_rate_hz:g} Hz allow",
+            )
+        )
+    for scan in source.reference if source.reference is not None else ():
+        if node.set_empty_room(np.ascontiguousarray(scan, np.float32)) != _core.Status.ok:
+            raise InputError(
+                problem(site.name, f"node {source.name}: reference", "finite scans of the empty room")
+            )
+    return node
+
+
+def _shown_scan(recording: Recording) -> int:
+    """Return the scan whose stages the report shows: the middle one, like the paper's 32nd of 61."""
+    return max((len(node.scans) for node in recording.nodes), default=0) // 2
+
+
+class _Tables:
+    """Collects the rows of a run."""
+
+    def __init__(self, recording: Recording, tracks: "_core.TrackManagerConfig") -> None:
+        self._recording = recording
+        self._frame_time_us: list[int] = []
+        self._points: list[NDArray[np.void]] = []
+        self._tracks: list[NDArray[np.void]] = []
+        self._baseline: list[NDArray[np.void]] = []
+        self._waiting: list[NDArray[np.void]] = []  # detections since the last frame closed
+        self._detections: list[NDArray[np.void]] = []
+        self._taps: dict[int, list[Taps]] = {}
+        self._shown: dict[str, Taps] = {}
+        self._kalman = _core.KalmanTracker()
+        if self._kalman.configure(tracks) != _core.Status.ok:
+            raise InputError(problem("site", f"pipeline.tracks.{tracks.invalid_field()}", "a possible value"))
+
+    def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
+        rows = np.zeros(len(output.detections), DETECTION_DTYPE)
+        rows["node"], rows["time_us"] = scan.node, scan.time_us
+        rows["delay_s"], rows["weight"] = output.detections["delay_s"], output.detections["weight"]
+        self._waiting.append(rows)
+        if output.taps:
+            keep = ("residual", "decisions", "range_clusters")
+            self._taps.setdefault(scan.node, []).append(
+                {name: output.taps[name] for name in keep if name in output.taps}
+            )
+            if shown:
+                self._shown[self._recording.nodes[scan.node].name] = output.taps
+
+    def add_frame(self, frame: FrameOutput) -> None:
+        number = len(self._frame_time_us)
+        last_us = self._frame_time_us[-1] if number else None
+        self._frame_time_us.append(frame.time_us)
+        for rows in self._waiting:
+            rows["frame"] = number
+        self._detections += self._waiting
+        self._waiting = []
+        points = np.zeros(len(frame.points), POINT_DTYPE)
+        points["frame"], points["time_us"] = number, frame.time_us
+        for column, name in enumerate(("x_m", "y_m", "members", "weight")):
+            points[name] = frame.points[:, column]
+        self._points.append(points)
+        self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
+        dt_s = 0.1 if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
+        _, tracks = self._kalman.process(np.ascontiguousarray(frame.points[:, :2]), dt_s)
+        self._baseline.append(_track_rows(number, frame.time_us, tracks))
+
+    def result(self, site: Site, counters: dict[str, dict[str, int]], shown: int) -> RunResult:
+        return RunResult(
+            site=site,
+            recording=self._recording,
+            frame_time_us=np.array(self._frame_time_us, np.int64),
+            detections=_joined(self._detections, DETECTION_DTYPE),
+            points=_joined(self._points, POINT_DTYPE),
+            tracks=_joined(self._tracks, TRACK_DTYPE),
+            baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
+            metrics={},
+            baseline_metrics={},
+            counters=counters,
+            stacks={self._recording.nodes[node].name: self._stack(node) for node in self._taps},
+            shown_frame=max(shown, 0),
+            shown_taps=self._shown,
+        )
+
+    def _stack(self, node: int) -> NodeStack:
+        source = self._recording.nodes[node]
+        n_samples = source.scans.shape[1]
+        nothing = np.zeros(n_samples, np.float32)
+        taps = self._taps[node]
+        return NodeStack(
+            residual=np.array([tap.get("residual", nothing) for tap in taps]),
+            decisions=np.array([tap.get("decisions", nothing) for tap in taps]).astype(np.uint8),
+            clusters=[tap.get("range_clusters", np.zeros((0, 4), np.float32)) for tap in taps],
+            delay_s=source.first_sample_s + np.arange(n_samples) / source.sample_rate_hz,
+        )
+
+
+def _track_rows(frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
+    rows = np.zeros(len(tracks), TRACK_DTYPE)
+    rows["frame"], rows["time_us"] = frame, time_us
+    for name in TRACK_DTYPE.names or ():
+        if name not in ("frame", "time_us"):
+            rows[name] = tracks[name]
+    return rows
+
+
+def _joined(tables: Iterable[NDArray[np.void]], dtype: "np.dtype[np.void]") -> NDArray[np.void]:
+    tables = list(tables)
+    return np.concatenate(tables) if tables else np.zeros(0, dtype)

@@ -1,0 +1,252 @@
+"""What the commands do: each takes the parsed options, prints, writes files, and returns the exit status."""
+
+import json
+import math
+from argparse import Namespace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from echofuse.display.progress import progress
+from echofuse.errors import InputError, problem
+from echofuse.pipeline import SPEED_OF_LIGHT_MPS, process_recording
+from echofuse.recording import Recording, read, write
+from echofuse.result import RunResult
+from echofuse.site import Site, example_site, load_site, parse_site
+
+TRACK_STATES = ("unconfirmed", "confirmed", "silent")
+
+
+def run(options: Namespace) -> int:
+    """Simulate a case or a site, process it, and write its folder."""
+    if options.seeds is not None:
+        return _run_seeds(options)
+    site, name = _site_of_case(options.case)
+    recording = _simulated(site, options.case, options.people, options.seed)
+    result = process_recording(recording, site, taps=not options.no_report)
+    folder = options.out or Path("runs") / f"{name}-{options.seed}"
+    return _finish(result, folder, report=not options.no_report)
+
+
+def process(options: Namespace) -> int:
+    """Track the people in a recording."""
+    recording = read(options.recording)
+    site = _site_of_recording(recording, options)
+    result = process_recording(recording, site, taps=not options.no_report)
+    folder = options.out or Path("runs") / options.recording.stem
+    return _finish(result, folder, report=not options.no_report)
+
+
+def verify(options: Namespace) -> int:
+    """Replay a recording's inputs and compare each frame's hash with the recorded one."""
+    recording = read(options.recording)
+    if recording.outputs is None or not len(recording.outputs.frame_hash):
+        raise InputError(
+            problem(options.recording, "outputs", "what a pipeline said (run or process writes it)")
+        )
+    site = _site_of_recording(recording, options)
+    result = process_recording(replace(recording, outputs=None), site)
+    replayed = result.outputs().frame_hash
+    recorded = recording.outputs.frame_hash
+    same = min(len(recorded), len(replayed))
+    differs = np.flatnonzero(np.any(recorded[:same] != replayed[:same], axis=1))
+    if len(recorded) != len(replayed):
+        print(f"verify: {len(recorded)} frames recorded, {len(replayed)} replayed")
+        return 1
+    if len(differs):
+        time_s = recording.outputs.frame_time_us[differs[0]] * 1e-6
+        print(
+            f"verify: {len(differs)} of {same} frames differ, the first is frame {differs[0]} at {time_s:.3f} s"
+        )
+        return 1
+    print(f"verify: {same} frames, all bytes the same (target {recording.outputs.target})")
+    return 0
+
+
+def import_(options: Namespace) -> int:
+    """Turn a logger's files into a recording."""
+    from echofuse.recording.importers import import_logger
+
+    recording = import_logger(options.source, load_site(options.site) if options.site else None)
+    _make_folder(options.out.parent)
+    write(options.out, recording)
+    for node in recording.nodes:
+        print(f"node {node.name}: {len(node.scans)} scans of {node.scans.shape[1]} samples")
+    site = parse_site(recording.site_toml, str(options.out))
+    print(f"positions from site '{site.name}'; wrote {options.out}")
+    return 0
+
+
+def conform(options: Namespace) -> int:
+    """Compare the library with its reference, tap by tap."""
+    from echofuse.conformance import conform as compare
+
+    passed = compare(
+        options.cases or ["sensor-radar"], seeds=options.seeds, recording=options.recording, out=options.out
+    )
+    return 0 if passed else 1
+
+
+def plan(options: Namespace) -> int:
+    """Draw what a site covers, and how accurate it can be."""
+    from echofuse.display import style
+    from echofuse.display.plan_figure import plan_figure
+    from echofuse.planning import plan_site
+
+    site = load_site(options.site)
+    planned = plan_site(site)
+    folder = options.out or Path("plans") / options.site.stem
+    _make_folder(folder)
+    style.save_png(plan_figure(**planned.figure_data()), folder / "plan.png")
+    _write_json(folder / "metrics.json", planned.metrics)
+    for name, value in planned.metrics.items():
+        print(f"{name:36s} {value:10.4g}")
+    print(f"wrote {folder / 'plan.png'}")
+    return 0
+
+
+def bench(options: Namespace) -> int:
+    """Measure the library against its reference, as ratios in one run."""
+    from echofuse.bench import bench as measure_all
+
+    table = measure_all()
+    if options.out:
+        _make_folder(options.out)
+        _write_json(options.out / "bench.json", table)
+    return 0
+
+
+COMMANDS: dict[str, Callable[[Namespace], int]] = {
+    "run": run,
+    "process": process,
+    "verify": verify,
+    "import": import_,
+    "conform": conform,
+    "plan": plan,
+    "bench": bench,
+}
+
+
+def _site_of_case(case: str) -> tuple[Site, str]:
+    if case == "sensor-radar":
+        return example_site("sensor_radar"), case
+    path = Path(case)
+    if path.suffix != ".toml":
+        raise InputError(problem(case, "", "a case (sensor-radar) or a site file (SITE.toml)"))
+    return load_site(path), path.stem
+
+
+def _site_of_recording(recording: Recording, options: Namespace) -> Site:
+    chosen: Path | None = getattr(options, "site", None)
+    if chosen is not None:
+        return load_site(chosen)
+    if not recording.site_toml.strip():
+        raise InputError(problem(options.recording, "site", "a site file inside, or --site SITE.toml"))
+    return parse_site(recording.site_toml, f"{options.recording}: /site")
+
+
+def _simulated(site: Site, case: str, people: int, seed: int) -> Recording:
+    from echofuse.simulation.scene import sensor_radar_scene
+    from echofuse.simulation.sensor_radar import case_study_people, simulate
+    from echofuse.simulation.site_scene import site_people, site_scene
+
+    if case == "sensor-radar":
+        scene, walkers = sensor_radar_scene(), case_study_people(people)
+    else:
+        scene = site_scene(site)
+        walkers = site_people(scene, people)
+    recording = simulate(
+        scene, walkers, seed=seed, progress=lambda frames: progress(frames, "simulating", len(frames))
+    )
+    return replace(recording, site_toml=site.to_toml())
+
+
+def _run_seeds(options: Namespace) -> int:
+    """Run many seeds, print one line each and their mean."""
+    site, name = _site_of_case(options.case)
+    rows: list[dict[str, float]] = []
+    baselines: list[dict[str, float]] = []
+    columns = (
+        "rmse_m", "p80_m", "one_track_fraction", "count_right_fraction", "false_track_fraction", "bound_ratio",
+    )  # fmt: skip
+    print("seed  " + "  ".join(f"{column:>20s}" for column in columns))
+    for seed in progress(options.seeds, "seeds", len(options.seeds)):
+        result = process_recording(_simulated(site, options.case, options.people, seed), site)
+        rows.append(result.metrics)
+        baselines.append(result.baseline_metrics)
+        print(f"{seed:4d}  " + _cells(result.metrics, columns))
+    for label, table in (("mean", rows), ("KF  ", baselines)):
+        mean = {column: float(np.mean([row[column] for row in table])) for column in columns}
+        print(f"{label}  " + _cells(mean, columns))
+    if options.out:
+        _make_folder(options.out)
+        _write_json(
+            options.out / "seeds.json",
+            {str(seed): row for seed, row in zip(options.seeds, rows, strict=True)},
+        )
+    return 0
+
+
+def _cells(metrics: dict[str, float], columns: Sequence[str]) -> str:
+    return "  ".join(f"{metrics[column]:20.4f}" for column in columns)
+
+
+def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
+    """Write a run's folder and say what came out."""
+    _make_folder(folder)
+    write(folder / "recording.h5", replace(result.recording, outputs=result.outputs()))
+    _write_json(folder / "metrics.json", result.metrics)
+    _write_json(folder / "baseline_metrics.json", result.baseline_metrics)
+    _write_json(folder / "counters.json", result.counters)
+    _write_tracks(folder / "tracks.csv", result)
+    _write_observations(folder / "observations.csv", result)
+    for name, value in result.metrics.items():
+        baseline = result.baseline_metrics.get(name)
+        beside = "" if baseline is None else f"   (Kalman baseline {baseline:.4g})"
+        print(f"{name:32s} {value:10.4g}{beside}")
+    if report:
+        from echofuse.display.report import write_report
+
+        print(f"wrote {write_report(result, folder)}")
+    else:
+        print(f"wrote {folder}")
+    return 0
+
+
+def _write_tracks(path: Path, result: RunResult) -> None:
+    with path.open("w") as file:
+        file.write("time_s,track_id,state,x_m,y_m,z_m,vx_mps,vy_mps,vz_mps\n")
+        for row in result.tracks:
+            file.write(
+                f"{row['time_us'] * 1e-6:.6f},{row['id']},{TRACK_STATES[row['state']]},{row['x_m']:.4f},"
+                f"{row['y_m']:.4f},nan,{row['vx_mps']:.4f},{row['vy_mps']:.4f},nan\n"
+            )
+
+
+def _write_observations(path: Path, result: RunResult) -> None:
+    with path.open("w") as file:
+        file.write("time_s,node,range_m,weight\n")
+        for row in result.detections:
+            name = result.recording.nodes[row["node"]].name
+            range_m = row["delay_s"] * SPEED_OF_LIGHT_MPS
+            file.write(f"{row['time_us'] * 1e-6:.6f},{name},{range_m:.4f},{row['weight']:.0f}\n")
+
+
+def _write_json(path: Path, document: object) -> None:
+    """Write numbers as JSON; what is not finite as null, since JSON has no word for it."""
+    path.write_text(json.dumps(_finite(document), indent=2) + "\n")
+
+
+def _finite(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(problem(folder, "", "a folder that can be made", error.strerror)) from error
