@@ -24,5 +24,14 @@ ROWS: dict[str, Tolerance] = {
     "hub.point_clusters.weight": Tolerance(1e-6, 1e-5, "a sum of up to 256 float32 weights"),
     "hub.coverage.snr_db": Tolerance(1e-5, 1e-4, "powers and a logarithm in float32"),
     "hub.coverage.bound": Tolerance(1e-4, 1e-6, "inverse of a 2 x 2 matrix in float32, condition up to 1e3"),
+    "hub.frame.weight": Tolerance(1e-7, 0.0, "carried through"),
+    "hub.pipeline.tracks": Tolerance(
+        0.0, 5e-3, "measurements agree to 1e-3 m, and a velocity is a difference of positions over 0.1 s"
+    ),
+    "hub.pipeline.phd_tracks": Tolerance(
+        0.0,
+        0.05,
+        "one of some hundred particles drawn as its neighbour moves a peak, most of all its velocity",
+    ),
     "hub.frame.path": Tolerance(1e-6, 0.0, "one float32 product"),
 }

@@ -118,7 +118,8 @@ def test_robust_refinement(kind, site_of, core_site):  # type: ignore[no-untyped
                 kind, "position", str(seed), fix.position_m, expected.position_m, "hub.ellipse.position"
             )
     for row in board.rows():
-        assert row.passed and row.cases > 30, row.failures[:3]
+        assert row.passed, row.failures[:3]
+        assert row.cases > 30
 
 
 def test_invalid_sites_are_named_alike(site_of, core_site):  # type: ignore[no-untyped-def]

@@ -1,4 +1,4 @@
-"""Hierarchical clustering (sensor-radar paper, Algorithm 2, with the least distance found anew in each pass)."""
+"""Hierarchical clustering (sensor-radar paper, Algorithm 2; each pass finds the least distance anew)."""
 
 from typing import NamedTuple, Protocol
 
