@@ -11,6 +11,8 @@ namespace {
 constexpr float kMaxMagnitude = 1e12f;  ///< squares of what filters make of it, and their sums, stay finite
 constexpr float kMaxDelay = 1.0f;       ///< [s] a bound for what is measured in nanoseconds
 
+constexpr float kResembling = 0.9f;  ///< [1] correlation of a scan with the background that it belongs to
+
 bool within(float value, float low, float high) { return value >= low && value <= high; }  // false for NaN
 
 /// The stage's first configuration that cannot be, by name.
@@ -172,8 +174,9 @@ DirectPath SensorRadarNode::find_direct_path(Span<const float> envelope) const {
 }
 
 /// Shift of the scan against the reference. The direct path gives the coarse one; where it is missing, the
-/// last scan's does. Where it jumped further than the search reaches (a person in its way, or a clock that
-/// stepped), the correlation decides between the two.
+/// last scan's does. A jump further than the search reaches is believed if the whole scan then resembles the
+/// background (a clock that stepped), and not if something hides the direct path, so that a wall is taken for
+/// it.
 signal::Alignment SensorRadarNode::align(Span<const float> envelope, const DirectPath& direct_path) {
   signal::Alignment alignment;
   if (n_reference_ == 0) return alignment;
@@ -185,9 +188,8 @@ signal::Alignment SensorRadarNode::align(Span<const float> envelope, const Direc
   (void)aligner_.estimate(envelope, reference, coarse, 0, config_.n_samples, alignment);
   if (std::abs(coarse - last) > config_.alignment.max_shift_samples) {
     ++counters_.alignment_doubts;
-    signal::Alignment other;
-    (void)aligner_.estimate(envelope, reference, last, 0, config_.n_samples, other);
-    if (other.correlation >= alignment.correlation) alignment = other;
+    if (alignment.correlation < kResembling)
+      (void)aligner_.estimate(envelope, reference, last, 0, config_.n_samples, alignment);
   }
   last_shift_samples_ = alignment.shift_samples;
   return alignment;

@@ -11,6 +11,8 @@ namespace {
 constexpr int kShiftsAtOnce = 4;       ///< one load of the reference serves four shifts
 constexpr int kProductsPerBlock = 64;  ///< partial sums keep the rounding error of a float sum small
 
+constexpr float kLeastFraction = 1e-7f;  ///< [sample] less than float32 can tell from 0 beside 1
+
 /// Sums of products of one range of the reference with the envelope at `kShifts` neighbouring shifts.
 template <int kShifts>
 void add_products(const float* envelope, const float* reference, int count, float* sums) {
@@ -186,7 +188,7 @@ Status Aligner::shift(Span<const float> input, float shift_samples, Span<float> 
   int n_taps = 1;
   int offset = whole;  // of the first tap's source from the output's sample
   taps[0] = 1.0f;
-  if (fraction > 0.0f && fraction < 1.0f) {
+  if (fraction > kLeastFraction && fraction < 1.0f) {
     interpolator(fraction, taps);
     n_taps = 2 * config_.interpolator_half_length_samples;
     offset = whole - config_.interpolator_half_length_samples + 1;

@@ -19,6 +19,7 @@ Samples = NDArray[np.float64]
 SPEED_OF_LIGHT_MPS = 299792458.0
 MAX_DETECTIONS = 16  # of one report
 MAX_CLUSTERS = 64  # of one scan
+RESEMBLING = 0.9  # correlation of a scan with the background that it belongs to
 NO_SHIFT = Alignment(0.0, 0.0, 1.0)
 
 
@@ -137,7 +138,7 @@ class SensorRadarNode:
         )
 
     def delay_s(self, position_samples: float) -> float:
-        """Propagation delay transmitter -> person -> receiver of an echo at a place in the aligned scan [s]."""
+        """Propagation delay transmitter -> person -> receiver of an echo in the aligned scan [s]."""
         config = self._config
         if config.time_zero == "recorded":
             return config.first_sample_s + position_samples / config.sample_rate_hz + config.delay_offset_s
@@ -157,7 +158,7 @@ class SensorRadarNode:
         return direct_path(amplitude, self._config.direct_path)
 
     def _align(self, amplitude: Samples, path: DirectPath) -> Alignment:
-        """Search around the direct path's shift; around the last scan's too where the two are far apart."""
+        """Search around the direct path's shift; a jump is believed if the scan then fits."""
         if not self._reference:
             return NO_SHIFT
         config = self._config.alignment
@@ -167,10 +168,8 @@ class SensorRadarNode:
             coarse = int(np.floor(path.toa_samples - self._background.toa_samples + 0.5))
         reference = np.mean(self._reference, axis=0)
         alignment = estimate_shift(amplitude, reference, coarse, 0, len(amplitude), config)
-        if abs(coarse - last) > config.max_shift_samples:
-            other = estimate_shift(amplitude, reference, last, 0, len(amplitude), config)
-            if other.correlation >= alignment.correlation:
-                alignment = other
+        if abs(coarse - last) > config.max_shift_samples and alignment.correlation < RESEMBLING:
+            alignment = estimate_shift(amplitude, reference, last, 0, len(amplitude), config)
         self._last_shift = alignment.shift_samples
         return alignment
 

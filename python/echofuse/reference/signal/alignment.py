@@ -55,7 +55,8 @@ def interpolator(fraction: float, half_length: int) -> Samples:
     x = np.arange(-half_length + 1, half_length + 1) - fraction
     window = 0.42 + 0.5 * np.cos(np.pi * x / half_length) + 0.08 * np.cos(2.0 * np.pi * x / half_length)
     taps = np.sinc(x) * window
-    return taps / taps.sum()
+    result: Samples = taps / taps.sum()
+    return result
 
 
 def shifted(samples: Samples, shift_samples: float, config: AlignmentConfig) -> Samples:

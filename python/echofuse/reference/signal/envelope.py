@@ -33,7 +33,8 @@ def low_pass_filter(half_length: int, cutoff_hz: float, sample_rate_hz: float) -
     """Impulse response (2 half_length + 1,) of a windowed sinc that passes a constant unchanged."""
     n = np.arange(-half_length, half_length + 1, dtype=np.float64)
     taps = np.sinc(2.0 * cutoff_hz / sample_rate_hz * n) * raised_cosine(n, half_length)
-    return taps / taps.sum()
+    gain = float(taps.sum())
+    return taps / gain
 
 
 def filtered(samples: Samples, taps: Samples) -> Samples:

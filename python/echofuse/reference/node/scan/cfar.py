@@ -54,7 +54,7 @@ def ordered_factor(cells: int, rank: int, false_alarm_probability: float) -> flo
 
 
 def training_cells(k: int, n_samples: int, config: CfarConfig) -> NDArray[np.intp]:
-    """Indices S_k of equation (14), cut at the scan's ends; for the global detector all but the guarded cells."""
+    """Indices S_k of equation (14), cut at the scan's ends; all but the guarded for `global_average`."""
     guard = config.guard_cells_per_side
     reach = n_samples if config.method == "global_average" else guard + config.training_cells_per_side
     left = np.arange(max(0, k - reach), max(0, k - guard))

@@ -53,7 +53,8 @@ class ClutterFilter:
         if not self.ready:
             self._learnt.append(samples)
             return np.zeros_like(samples)
-        return samples - np.mean(self._empty_room or self._learnt, axis=0)
+        background: Samples = np.mean(self._empty_room or self._learnt, axis=0)
+        return samples - background
 
     def _frame_difference(self, samples: Samples) -> Samples:
         ready = self.ready

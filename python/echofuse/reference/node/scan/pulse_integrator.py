@@ -27,6 +27,6 @@ class PulseIntegrator:
         self._pulses.append(pulse)
         if len(self._pulses) < self._pulses_per_scan:
             return None
-        scan = np.mean(self._pulses, axis=0)
+        scan: Samples = np.mean(self._pulses, axis=0)
         self._pulses = []
         return scan
