@@ -60,12 +60,15 @@ def test_least_squares_reach_the_bound(place):  # type: ignore[no-untyped-def]
     area = _core.Area(max_x_m=11.5, max_y_m=6.0)
     coverage = _core.Coverage()
     assert (
-        coverage.configure(_core.CoverageConfig(path_sigma_m=0.05, min_snr_db=-50.0), nodes, area)
+        coverage.configure(
+            _core.CoverageConfig(path_sigma_m=0.05, min_snr_db=-50.0, blind_zone_s=0.0), nodes, area
+        )
         == _core.Status.ok
     )
     _, seen = coverage.process(np.array([place], np.float32))
     bound = float(seen["position_error_bound_m"][0])
-    assert 0.03 < bound < 0.075
+    gradients = path_gradient(np.array(place), tx, rx)
+    assert bound == pytest.approx(reference.position_error_bound_m(gradients, 0.05), rel=1e-4)
     rng, squared = np.random.default_rng(2), []
     stage = _core.EllipseLeastSquares()
     assert stage.configure(_core.EllipseConfig()) == _core.Status.ok
