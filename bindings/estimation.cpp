@@ -54,8 +54,8 @@ void bind_functions(py::module_& m) {
       "systematic_resample",
       [](const FloatArray& weights, float uniform, std::size_t n_out) {
         ArrayOf<std::uint16_t> indices(static_cast<py::ssize_t>(n_out));
-        const Status status =
-            estimation::systematic_resample(as_span(weights, "weights"), uniform, {indices.mutable_data(), n_out});
+        const Status status = estimation::systematic_resample(as_span(weights, "weights"), uniform,
+                                                              {indices.mutable_data(), n_out});
         return py::make_tuple(status, indices);
       },
       py::arg("weights").noconvert(), py::arg("uniform"), py::arg("n_out"), "(status, indices (n_out,)).");
@@ -64,10 +64,10 @@ void bind_functions(py::module_& m) {
       [](const FloatArray& cost) {
         if (cost.ndim() != 2) throw py::value_error("cost must have shape (n_rows, n_columns)");
         ArrayOf<int> columns(cost.shape(0));
-        const Status status = estimation::assign({cost.data(), static_cast<std::size_t>(cost.size())},
-                                                 static_cast<std::size_t>(cost.shape(0)),
-                                                 static_cast<std::size_t>(cost.shape(1)),
-                                                 {columns.mutable_data(), static_cast<std::size_t>(columns.size())});
+        const Status status = estimation::assign(
+            {cost.data(), static_cast<std::size_t>(cost.size())}, static_cast<std::size_t>(cost.shape(0)),
+            static_cast<std::size_t>(cost.shape(1)),
+            {columns.mutable_data(), static_cast<std::size_t>(columns.size())});
         return py::make_tuple(status, columns);
       },
       py::arg("cost").noconvert(), "(status, column of each row or -1) of the least total cost.");
@@ -85,8 +85,8 @@ void bind_kalman(py::module_& m) {
                                            array_to_matrix<Covariance>(covariance, "covariance"));
            }),
            py::arg("state").noconvert(), py::arg("covariance").noconvert())
-      .def("predict", &ConstantVelocityFilter::predict, py::arg("dt_s"), py::arg("acceleration_density_m2ps3"),
-           py::arg("velocity_decay") = 1.0f)
+      .def("predict", &ConstantVelocityFilter::predict, py::arg("dt_s"),
+           py::arg("acceleration_density_m2ps3"), py::arg("velocity_decay") = 1.0f)
       .def(
           "update",
           [](ConstantVelocityFilter& self, float x_m, float y_m, const FloatArray& covariance) {
@@ -134,7 +134,8 @@ void bind_mixture(py::module_& m) {
           },
           py::arg("particles").noconvert(), py::arg("seeds").noconvert(), py::arg("n_components"),
           py::arg("random"),
-          "(status, structured array of MixtureComponent, background share) of particles (n, 5) and seeds (s, 3).")
+          "(status, structured array of MixtureComponent, background share) of particles (n, 5) and seeds "
+          "(s, 3).")
       .def(
           "log_likelihood",
           [](const MixtureFitter& self, const FloatArray& particles,

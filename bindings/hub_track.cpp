@@ -29,7 +29,8 @@ struct TapRecorder {
   static void record(void* context, TapId tap, Span<const float> values) {
     auto& self = *static_cast<TapRecorder*>(context);
     const std::size_t columns = self.columns_of(tap);
-    py::array_t<float> rows({static_cast<py::ssize_t>(values.size() / columns), static_cast<py::ssize_t>(columns)});
+    py::array_t<float> rows(
+        {static_cast<py::ssize_t>(values.size() / columns), static_cast<py::ssize_t>(columns)});
     std::copy(values.begin(), values.end(), rows.mutable_data());
     self.taps[py::int_(static_cast<int>(tap))] = rows;
   }
@@ -138,8 +139,8 @@ void bind_track_manager(py::module_& m) {
             const auto rows = as_span_of_rows(points, 7, "points");
             std::vector<TrackEstimate> estimates;
             for (std::size_t i = 0; i < rows.size(); i += 7)
-              estimates.push_back({rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5],
-                                   rows[i + 6]});
+              estimates.push_back(
+                  {rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5], rows[i + 6]});
             link::Tracks tracks;
             const Status status = self.process(view(estimates), dt_s, tracks);
             return py::make_tuple(status, to_array(tracks));
@@ -158,8 +159,8 @@ void bind_trackers(py::module_& m) {
       .def("reset", &PhdTracker::reset)
       .def("process", &run<PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
            "(status, structured array of Track) of measurements (m, 2) [m].")
-      .def("process_with_taps", &run_with_taps<PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
-           "(status, tracks, taps): taps by TapId, each (n, columns).")
+      .def("process_with_taps", &run_with_taps<PhdTracker>, py::arg("measurements").noconvert(),
+           py::arg("dt_s"), "(status, tracks, taps): taps by TapId, each (n, columns).")
       .def_property_readonly("mass", [](const PhdTracker& self) { return self.phd().mass(); })
       .def_property_readonly("dropped_births",
                              [](const PhdTracker& self) { return self.manager().dropped_births(); });

@@ -12,8 +12,8 @@ namespace echofuse::bindings {
 /// A copy as (n, 5): x, vx, y, vy, weight.
 inline py::array_t<float> to_rows(Span<const estimation::Particle> particles) {
   const Span<const float> rows = estimation::as_rows(particles);
-  py::array_t<float> array({static_cast<py::ssize_t>(particles.size()),
-                            static_cast<py::ssize_t>(estimation::kParticleColumns)});
+  py::array_t<float> array(
+      {static_cast<py::ssize_t>(particles.size()), static_cast<py::ssize_t>(estimation::kParticleColumns)});
   if (!rows.empty()) std::memcpy(array.mutable_data(), rows.data(), rows.size() * sizeof(float));
   return array;
 }

@@ -21,7 +21,7 @@ __all__ = ["KalmanTracker", "MixtureConfig", "PhdConfig", "PhdTracker", "TrackMa
 
 
 class PhdTracker:
-    """Particle PHD filter, its peaks by expectation-maximisation, and tracks (sensor-radar paper, V-D and V-E).
+    """Particle PHD filter, its peaks by expectation-maximisation, and tracks (sensor-radar paper, V-D, V-E).
 
     Parameters
     ----------
@@ -44,7 +44,11 @@ class PhdTracker:
         manager: TrackManagerConfig | None = None,
         peaks: MixtureConfig | None = None,
     ) -> None:
-        config, manager, peaks = config or PhdConfig(), manager or TrackManagerConfig(), peaks or MixtureConfig()
+        config, manager, peaks = (
+            config or PhdConfig(),
+            manager or TrackManagerConfig(),
+            peaks or MixtureConfig(),
+        )
         for given in (config, manager, peaks):
             _require_valid(given)
         self._tracker = _core.PhdTracker()
@@ -58,10 +62,9 @@ class PhdTracker:
         measurements
             Points (m, 2) [m], float32; m may be 0. Of more than 32 points the first 32 are used.
 
-        Returns
-        -------
-        Structured array of all living tracks, ascending ``id``: ``state`` (a `TrackState` value),
-        ``frames_since_update``, ``x_m``, ``y_m``, ``vx_mps``, ``vy_mps`` and the position's ``covariance_*_m2``.
+        Returns ------- Structured array of all living tracks, ascending ``id``: ``state`` (a `TrackState`
+        value), ``frames_since_update``, ``x_m``, ``y_m``, ``vx_mps``, ``vy_mps`` and the position's
+        ``covariance_*_m2``.
 
         Raises
         ------
@@ -70,7 +73,7 @@ class PhdTracker:
         """
         status, tracks = self._tracker.process(measurements, dt_s)
         _require_done(status)
-        return tracks
+        return np.asarray(tracks)
 
     def reset(self) -> None:
         """Forget everything; the random stream starts anew."""
@@ -95,10 +98,10 @@ class KalmanTracker:
         _require_done(self._tracker.configure(manager))
 
     def process(self, measurements: NDArray[np.float32], dt_s: float) -> NDArray[np.void]:
-        """Take in the points (m, 2) [m] of one frame, ``dt_s`` [s] after the last one; see `PhdTracker.process`."""
+        """Take in the points (m, 2) [m] of one frame, ``dt_s`` [s] after the last; see `PhdTracker`."""
         status, tracks = self._tracker.process(measurements, dt_s)
         _require_done(status)
-        return tracks
+        return np.asarray(tracks)
 
     def reset(self) -> None:
         """Forget everything."""

@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 
 
 class Ospa(NamedTuple):
-    """An OSPA distance [m] and its two parts: ``distance**order = localisation**order + cardinality**order``."""
+    """An OSPA distance [m]: ``distance**order = localisation**order + cardinality**order``."""
 
     distance: float
     localisation: float
@@ -70,7 +70,9 @@ def gospa(
     half = cutoff_m**order / 2.0
     localisation = float((paired**order).sum())
     missed, false = half * n_missed, half * n_false
-    return Gospa((localisation + missed + false) ** (1.0 / order), localisation, missed, false, n_missed, n_false)
+    return Gospa(
+        (localisation + missed + false) ** (1.0 / order), localisation, missed, false, n_missed, n_false
+    )
 
 
 def _capped(

@@ -1,17 +1,25 @@
-"""Trackers alone: targets in a square, their measurements with misses and clutter, and the score of a tracker."""
+"""Trackers alone: targets in a square, measurements with misses and clutter, and the score of a tracker."""
 
 from __future__ import annotations
 
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.evaluation.ospa import ospa
-from echofuse.tracking import KalmanTracker, MixtureConfig, PhdConfig, PhdTracker, TrackManagerConfig, TrackState
+from echofuse.tracking import (
+    KalmanTracker,
+    MixtureConfig,
+    PhdConfig,
+    PhdTracker,
+    TrackManagerConfig,
+    TrackState,
+)
 
 
 class TrackingScene(NamedTuple):
@@ -47,9 +55,9 @@ def tracking_scene(
 ) -> TrackingScene:
     """Draw a scene of targets of nearly constant velocity in a square, and Poisson clutter uniform over it.
 
-    Each target starts anywhere, in any direction, at a speed normal around ``speed_mps`` (deviation a tenth). Paths
-    that leave the square are drawn anew; with ``mirrored`` they are reflected at its walls in no time, which is a
-    harder test than people are.
+    Each target starts anywhere, in any direction, at a speed normal around ``speed_mps`` (deviation a tenth).
+    Paths that leave the square are drawn anew; with ``mirrored`` they are reflected at its walls in no time,
+    which is a harder test than people are.
     """
     rng = np.random.default_rng(seed)
     velocity_steps = np.sqrt(acceleration_density_m2ps3 * dt_s)
@@ -85,8 +93,8 @@ def score_tracker(
 ) -> TrackingScore:
     """Score ``process(measurements, dt_s) -> positions (n, 2)`` of the reported tracks [m].
 
-    No tracker can tell ten targets from ten clutter points in the first scan, and each silent scan there costs a
-    number error of ten; so the scans from ``first_scan`` on are scored apart.
+    No tracker can tell ten targets from ten clutter points in the first scan, and each silent scan there
+    costs a number error of ten; so the scans from ``first_scan`` on are scored apart.
     """
     errors, numbers = [], []
     for true, measured in zip(scene.truth, scene.measurements, strict=True):
@@ -121,7 +129,7 @@ def benchmark_trackers(tracker_seed: int = 1) -> dict[str, PhdTracker | KalmanTr
         seed=tracker_seed,
     )
     tracks = TrackManagerConfig(
-        gate_m=0.6, silent_velocity_time_s=2.0, silent_time_max_s=3.0, acceleration_density_m2ps3=0.02
+        silent_velocity_time_s=2.0, silent_time_max_s=3.0, acceleration_density_m2ps3=0.02
     )
     kalman = TrackManagerConfig(
         gate_m=0.6,
@@ -133,11 +141,20 @@ def benchmark_trackers(tracker_seed: int = 1) -> dict[str, PhdTracker | KalmanTr
         measurement_std_m=0.1,
         velocity_std_mps=1.0,
     )
-    return {"phd": PhdTracker(config, tracks, MixtureConfig(initial_std_m=0.1)), "kalman": KalmanTracker(kalman)}
+    return {
+        "phd": PhdTracker(config, tracks, MixtureConfig(initial_std_m=0.1)),
+        "kalman": KalmanTracker(kalman),
+    }
+
+
+def _positions_after(
+    tracker: PhdTracker | KalmanTracker, measurements: NDArray[np.float32], dt_s: float
+) -> NDArray[np.float64]:
+    return reported_positions(tracker.process(measurements, dt_s))
 
 
 def main() -> None:
-    """Print the mean scores of both trackers over seeds: ``python -m echofuse.evaluation.tracking_benchmark``."""
+    """Print both trackers' mean scores: ``python -m echofuse.evaluation.tracking_benchmark``."""
     parser = argparse.ArgumentParser(description="Score the trackers on the ten-target scene.")
     parser.add_argument("--seeds", type=int, default=20, help="scenes 0 to SEEDS - 1")
     parser.add_argument("--mirrored", action="store_true", help="targets bounce off the walls")
@@ -148,9 +165,7 @@ def main() -> None:
         for seed in range(arguments.seeds):
             tracker = benchmark_trackers(seed + 1)[name]
             scene = tracking_scene(seed, mirrored=arguments.mirrored)
-            scores.append(
-                score_tracker(scene, lambda z, dt_s, t=tracker: reported_positions(t.process(z, dt_s)))
-            )
+            scores.append(score_tracker(scene, partial(_positions_after, tracker)))
         milliseconds = 10.0 * (time.perf_counter() - started) / arguments.seeds
         mean = np.mean(scores, axis=0)
         print(f"{name:8} {mean[0]:7.3f} {mean[1]:7.3f} {mean[2]:10.3f} {mean[3]:12.3f} {milliseconds:8.2f}")

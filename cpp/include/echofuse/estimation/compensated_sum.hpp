@@ -2,8 +2,8 @@
 
 namespace echofuse::estimation {
 
-/// Sum in float32 that keeps what rounding loses (Kahan, Communications of the ACM 8, 1965): its error does not
-/// grow with the number of terms.
+/// Sum in float32 that keeps what rounding loses (Kahan, Communications of the ACM 8, 1965): its error does
+/// not grow with the number of terms.
 class CompensatedSum {
  public:
   void add(float term) {

@@ -23,9 +23,9 @@ struct MixtureConfig {
   float initial_std_m = 0.2f;         ///< [m] of every component at the start, > 0
   float covariance_floor_m2 = 1e-3f;  ///< [m^2] added to both variances, > 0
   float background_density_per_m2 =
-      0.01f;                   ///< [1/m^2] uniform component for what belongs to no peak, >= 0; 0: none (paper)
-  int max_iterations = 30;     ///< [1] 1 to 1000
-  float tolerance_m = 1e-3f;   ///< [m] stop when no mean moved further, >= 0
+      0.01f;                ///< [1/m^2] uniform component for what belongs to no peak, >= 0; 0: none (paper)
+  int max_iterations = 30;  ///< [1] 1 to 1000
+  float tolerance_m = 1e-3f;  ///< [m] stop when no mean moved further, >= 0
 };
 
 /// nullptr, or the name of the first member with an impossible value.
@@ -51,10 +51,10 @@ struct Mixture {
   float background = 0.0f;                                  ///< [1] share of the uniform component
 };
 
-/// Peaks of a particle density: Gaussian mixture by expectation-maximisation (Dempster, Laird & Rubin 1977) on
-/// weighted positions. The uniform component keeps stray particles (a missed target's, clutter's) from pulling a
-/// peak across the room. Work: particles * components * iterations.
-/// Reference: python/echofuse/reference/estimation/mixture_em.py
+/// Peaks of a particle density: Gaussian mixture by expectation-maximisation (Dempster, Laird & Rubin 1977)
+/// on weighted positions. The uniform component keeps stray particles (a missed target's, clutter's) from
+/// pulling a peak across the room. Work: particles * components * iterations. Reference:
+/// python/echofuse/reference/estimation/mixture_em.py
 class MixtureFitter {
  public:
   /// kInvalidConfig: the earlier configuration stays in force.

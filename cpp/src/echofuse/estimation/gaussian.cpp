@@ -16,9 +16,8 @@ float gaussian_kernel_within_cut(float squared_distance) {
   const float r = (n_float * kLn2High - y) + n_float * kLn2Low;
   const float series =
       1.0f +
-      r * (1.0f +
-           r * (0.5f +
-                r * (1.0f / 6.0f + r * (1.0f / 24.0f +
+      r * (1.0f + r * (0.5f + r * (1.0f / 6.0f +
+                                   r * (1.0f / 24.0f +
                                         r * (1.0f / 120.0f + r * (1.0f / 720.0f + r * (1.0f / 5040.0f)))))));
   const auto scale_bits = static_cast<std::uint32_t>(127 - n) << 23u;
   float scale = 0.0f;

@@ -39,8 +39,8 @@ void ConstantVelocityFilter::update(const Position& measured, const Covariance2&
   const Measurement innovation(measured.x_m - state_(0), measured.y_m - state_(2));
   const Covariance rest = Covariance::Identity() - gain * shown;
   state_ += gain * innovation;
-  const Covariance updated = rest * covariance_ * rest.transpose() +
-                             gain * measurement_covariance * gain.transpose();
+  const Covariance updated =
+      rest * covariance_ * rest.transpose() + gain * measurement_covariance * gain.transpose();
   covariance_ = 0.5f * (updated + updated.transpose());
 }
 

@@ -11,7 +11,7 @@
 namespace echofuse::estimation {
 namespace {
 
-constexpr float kEmptyShare = 1e-6f;   ///< a component with less stays where it is, with share 0
+constexpr float kEmptyShare = 1e-6f;     ///< a component with less stays where it is, with share 0
 constexpr float kLeastDensity = 1e-12f;  ///< [1/m^2] of a particle that nothing explains, for the logarithm
 constexpr float kTwoPi = 2.0f * kPi;
 
@@ -136,8 +136,7 @@ void MixtureFitter::take_best_seeds(Span<const MixtureSeed> seeds, std::size_t n
   while (mixture.components.size() < n) {  // the next lighter one, the first of equals
     const MixtureSeed* best = nullptr;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
-      const bool after_last =
-          seeds[i].mass < last_mass || (seeds[i].mass == last_mass && i > last_index);
+      const bool after_last = seeds[i].mass < last_mass || (seeds[i].mass == last_mass && i > last_index);
       if (!after_last || !(seeds[i].mass > (best == nullptr ? 0.0f : best->mass))) continue;
       best = &seeds[i];
     }

@@ -11,8 +11,8 @@ NONE = -1
 def assign(cost: NDArray[np.float64]) -> NDArray[np.intp]:
     """Return for each row of ``cost`` (n_rows, n_columns) its column, or -1; (n_rows,).
 
-    As many pairs as the shorter side has, of the least total cost. One row after another enters along the shortest
-    augmenting path, found with row and column potentials that keep every reduced cost non-negative.
+    As many pairs as the shorter side has, of the least total cost. One row after another enters along the
+    shortest augmenting path, found with row and column potentials that keep every reduced cost non-negative.
     """
     n_rows, n_columns = cost.shape
     if n_rows > n_columns:
@@ -38,7 +38,7 @@ def _enter(
     column_potential: NDArray[np.float64],
     row_of: NDArray[np.intp],
 ) -> None:
-    """Add row ``root`` along the shortest alternating path to a free column (Dijkstra on the reduced costs)."""
+    """Add row ``root`` along the shortest alternating path to a free column (Dijkstra, reduced costs)."""
     n_columns = cost.shape[1]
     distance = np.full(n_columns, np.inf)
     previous = np.full(n_columns, NONE, np.intp)  # column from whose row this one was reached
@@ -64,11 +64,14 @@ def _enter(
         column = int(previous[column])
 
 
-def assignment_margin(cost: NDArray[np.float64], columns: NDArray[np.intp], cap: NDArray[np.float64]) -> float:
+def assignment_margin(
+    cost: NDArray[np.float64], columns: NDArray[np.intp], cap: NDArray[np.float64]
+) -> float:
     """How much dearer the next best decision is, over the largest cap.
 
-    ``cost`` (n_rows, n_columns) is capped at ``cap`` (n_rows,): a pair at its cap is no pair. Another decision either
-    lacks one of the pairs found, or adds a pair of a free row and a free column that is just at its cap.
+    ``cost`` (n_rows, n_columns) is capped at ``cap`` (n_rows,): a pair at its cap is no pair. Another
+    decision either lacks one of the pairs found, or adds a pair of a free row and a free column that is just
+    at its cap.
     """
     if cost.size == 0:
         return np.inf

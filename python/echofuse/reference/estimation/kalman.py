@@ -1,6 +1,7 @@
 """Kalman filter of a point in the plane that keeps its velocity but for white acceleration.
 
-Bar-Shalom, Li & Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, sections 5.2 and 6.2.
+Bar-Shalom, Li & Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, sections 5.2 and
+6.2.
 """
 
 from __future__ import annotations
@@ -29,12 +30,14 @@ class ConstantVelocityFilter:
 
     def innovation_covariance(self, measurement_covariance: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the covariance (2, 2) [m^2] of a measured minus the predicted position."""
-        return POSITION @ self.covariance @ POSITION.T + measurement_covariance
+        return np.asarray(POSITION @ self.covariance @ POSITION.T + measurement_covariance)
 
     def update(self, position: NDArray[np.float64], measurement_covariance: NDArray[np.float64]) -> None:
         """Take in a measured position (2,) [m] with its covariance (2, 2) [m^2]; Joseph's form."""
         innovation = position - POSITION @ self.state
-        gain = self.covariance @ POSITION.T @ np.linalg.inv(self.innovation_covariance(measurement_covariance))
+        gain = (
+            self.covariance @ POSITION.T @ np.linalg.inv(self.innovation_covariance(measurement_covariance))
+        )
         rest = np.eye(4) - gain @ POSITION
         self.state = self.state + gain @ innovation
         self.covariance = rest @ self.covariance @ rest.T + gain @ measurement_covariance @ gain.T

@@ -1,4 +1,4 @@
-"""Peaks of a particle density: a Gaussian mixture by expectation-maximisation (Dempster, Laird & Rubin 1977)."""
+"""Peaks of a particle density: Gaussian mixture by expectation-maximisation (Dempster et al. 1977)."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def fit_mixture(
 ) -> Mixture:
     """Fit ``n_components`` Gaussians to the positions of ``particles`` (n, 5).
 
-    ``seeds`` (n_seeds, 3): x, y [m] and mass of where a peak may be; the heaviest are taken, and what they do not
-    fill is drawn as k-means++ does (Arthur & Vassilvitskii 2007), one uniform number a draw.
+    ``seeds`` (n_seeds, 3): x, y [m] and mass of where a peak may be; the heaviest are taken, and what they do
+    not fill is drawn as k-means++ does (Arthur & Vassilvitskii 2007), one uniform number a draw.
     """
     weights = particles[:, WEIGHT] / particles[:, WEIGHT].sum()
     positions = particles[:, [X, Y]]
@@ -81,7 +81,7 @@ def log_likelihood(particles: NDArray[np.float64], mixture: Mixture, config: Mix
 
 
 def _best_seeds(seeds: NDArray[np.float64], n: int) -> tuple[NDArray[np.float64], float]:
-    """Take the positions of the n heaviest seeds with any mass, heaviest first, and the margin of that order."""
+    """Take the n heaviest seeds with any mass, heaviest first, and the margin of that order."""
     order = np.argsort(-seeds[:, 2], kind="stable")
     order = order[seeds[order, 2] > 0.0]
     masses = seeds[order[: n + 1], 2]
@@ -155,9 +155,12 @@ def _step(
         mean[c] = parts[:, c] @ positions / sums[c]
         velocity[c] = parts[:, c] @ velocities / sums[c]
         offset = positions - mean[c]
-        covariance[c] = (parts[:, c, None] * offset).T @ offset / sums[c] + config.covariance_floor_m2 * np.eye(2)
+        covariance[c] = (parts[:, c, None] * offset).T @ offset / sums[
+            c
+        ] + config.covariance_floor_m2 * np.eye(2)
         share[c] = sums[c] / everything
-    return Mixture(mean, velocity, covariance, share, float(background @ scale) / everything, mixture.margin)
+    stray = float(background @ scale) / everything if everything > 0.0 else 0.0
+    return Mixture(mean, velocity, covariance, share, stray, mixture.margin)
 
 
 def _densities(positions: NDArray[np.float64], mixture: Mixture) -> NDArray[np.float64]:

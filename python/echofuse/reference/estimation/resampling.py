@@ -12,14 +12,16 @@ class Resampling(NamedTuple):
     """Which particle each new particle copies, and how far that choice is from its neighbour."""
 
     indices: NDArray[np.intp]  # (n_out,) ascending
-    margin: NDArray[np.float64]  # (n_out,) distance of the pointer to the next cumulative weight, over the total
+    margin: NDArray[
+        np.float64
+    ]  # (n_out,) distance of the pointer to the next cumulative weight, over the total
 
 
 def systematic_resample(weights: NDArray[np.float64], uniform: float, n_out: int) -> Resampling:
     """Draw n_out indices, each as often as its share of ``weights`` (n,), from one uniform number in [0, 1).
 
-    The k-th pointer, (k + uniform) * total / n_out, falls on the first particle whose cumulative weight exceeds it.
-    Without any weight there is nothing to draw: the result is empty.
+    The k-th pointer, (k + uniform) * total / n_out, falls on the first particle whose cumulative weight
+    exceeds it. Without any weight there is nothing to draw: the result is empty.
     """
     cumulative = np.cumsum(weights)
     total = float(cumulative[-1]) if len(weights) else 0.0

@@ -11,9 +11,9 @@
 
 namespace echofuse::hub {
 
-/// The baseline: a constant-velocity Kalman filter a track, global nearest neighbour (the assignment of least total
-/// distance within the gates), and the same track states as after the PHD filter.
-/// Reference: python/echofuse/reference/hub/track/kalman_tracker.py
+/// The baseline: a constant-velocity Kalman filter a track, global nearest neighbour (the assignment of least
+/// total distance within the gates), and the same track states as after the PHD filter. Reference:
+/// python/echofuse/reference/hub/track/kalman_tracker.py
 class KalmanTracker {
  public:
   /// config.update is taken as kKalman, whatever it says.

@@ -20,17 +20,17 @@ enum class ResamplingChance : std::uint8_t {
 };
 
 struct PhdConfig {
-  float detection_probability = 0.9f;  ///< [1] of a target, per frame, in [0, 1]
-  float survival_probability = 0.99f;  ///< [1] of a target, per frame, in (0, 1]
-  float clutter_per_frame = 2.0f;      ///< [1] expected clutter points, uniform over the area, >= 0
-  float birth_per_frame = 0.02f;       ///< [1] expected new targets, uniform over the area, > 0
-  float area_m2 = 69.0f;               ///< [m^2] of the monitored area, > 0
-  float measurement_std_m = 0.3f;      ///< [m] of a point, per coordinate, > 0
+  float detection_probability = 0.9f;       ///< [1] of a target, per frame, in [0, 1]
+  float survival_probability = 0.99f;       ///< [1] of a target, per frame, in (0, 1]
+  float clutter_per_frame = 2.0f;           ///< [1] expected clutter points, uniform over the area, >= 0
+  float birth_per_frame = 0.02f;            ///< [1] expected new targets, uniform over the area, > 0
+  float area_m2 = 69.0f;                    ///< [m^2] of the monitored area, > 0
+  float measurement_std_m = 0.3f;           ///< [m] of a point, per coordinate, > 0
   float acceleration_density_m2ps3 = 0.1f;  ///< [m^2/s^3] velocity variance gained per second, >= 0
   float newborn_velocity_std_mps = 1.2f;    ///< [m/s] per coordinate, >= 0
   int particles_per_target = 1000;          ///< [1] 1 to kMaxParticles; kMaxParticles in total
-  int newborn_per_measurement = 64;  ///< [1] 1 to kMaxNewbornParticles; kMaxNewbornParticles in total
-  int mass_average_frames = 1;       ///< [1] over which the mass is averaged before rounding, 1 to 16
+  int newborn_per_measurement = 64;         ///< [1] 1 to kMaxNewbornParticles; kMaxNewbornParticles in total
+  int mass_average_frames = 1;              ///< [1] over which the mass is averaged before rounding, 1 to 16
   ResamplingChance resampling = ResamplingChance::kSquareRoot;
   std::uint64_t seed = 1;  ///< of the random stream
 };
@@ -38,14 +38,15 @@ struct PhdConfig {
 /// nullptr, or the name of the first member with an impossible value.
 const char* invalid_field(const PhdConfig& config);
 
-/// Particle PHD filter with measurement-driven birth (Mahler, IEEE Trans. Aerospace and Electronic Systems 39(4),
-/// 2003; persistent and newborn targets apart as Ristic, Clark, Vo & Vo, ibid. 48(2), 2012):
+/// Particle PHD filter with measurement-driven birth (Mahler, IEEE Trans. Aerospace and Electronic Systems
+/// 39(4), 2003; persistent and newborn targets apart as Ristic, Clark, Vo & Vo, ibid. 48(2), 2012):
 ///   L(z) = kappa + n_b/A + sum_i p_D g(z|x_i) w_i,  w_i <- (1 - p_D) w_i + sum_z p_D g(z|x_i) w_i / L(z),
-///   newborn of z: particles around z with mass (n_b/A) / L(z), which join the persistent ones in the next frame.
+///   newborn of z: particles around z with mass (n_b/A) / L(z), which join the persistent ones in the next
+///   frame.
 /// A frame is predict, update, resample. Work: particles * measurements.
-/// Random draws: predict, a normal for x and one for y of each particle; update, four normals (x, y, vx, vy) for
-/// each newborn particle, measurement by measurement, then 32 bits (peak_seed); resample, one uniform number.
-/// Reference: python/echofuse/reference/hub/track/phd_filter.py
+/// Random draws: predict, a normal for x and one for y of each particle; update, four normals (x, y, vx, vy)
+/// for each newborn particle, measurement by measurement, then 32 bits (peak_seed); resample, one uniform
+/// number. Reference: python/echofuse/reference/hub/track/phd_filter.py
 class PhdFilter {
  public:
   /// Also resets. kInvalidConfig: the earlier configuration and state stay in force.
@@ -57,7 +58,8 @@ class PhdFilter {
   /// dt_s: [s] > 0 since the last frame, else kInvalidInput and nothing changes.
   Status predict(float dt_s);
 
-  /// kInvalidInput: a measurement is not finite; nothing changes. kTruncated: the first kMaxPointsPerFrame used.
+  /// kInvalidInput: a measurement is not finite; nothing changes. kTruncated: the first kMaxPointsPerFrame
+  /// used.
   Status update(Span<const estimation::Position> measurements);
 
   /// Draws the particles of the next frame; the mass stays.
@@ -69,7 +71,7 @@ class PhdFilter {
 
   /// Of the last update: position of each measurement and the persistent mass that it explains.
   Span<const estimation::MixtureSeed> seeds() const { return seeds_.span(); }
-  float mass() const { return mass_; }         ///< [1] expected number of targets after the last update
+  float mass() const { return mass_; }            ///< [1] expected number of targets after the last update
   std::size_t number() const { return number_; }  ///< mass averaged over frames, rounded, <= kMaxTargets
   std::uint32_t peak_seed() const { return peak_seed_; }  ///< for the search for peaks in this frame
 
@@ -88,8 +90,8 @@ class PhdFilter {
   std::array<estimation::Particle, kPoolSize> particles_{};
   std::size_t n_particles_ = 0;
   std::size_t n_persistent_ = 0;
-  std::array<float, kPoolSize> parts_{};          ///< scratch: one value a particle
-  std::array<float, kMaxParticles> updated_{};    ///< scratch: weights after the update
+  std::array<float, kPoolSize> parts_{};              ///< scratch: one value a particle
+  std::array<float, kMaxParticles> updated_{};        ///< scratch: weights after the update
   std::array<std::uint16_t, kMaxParticles> drawn_{};  ///< scratch: resampled indices
   BoundedVector<estimation::MixtureSeed, kMaxPointsPerFrame> seeds_;
   std::array<float, kMaxAveragedFrames> masses_{};  ///< ring of the last frames

@@ -13,12 +13,13 @@
 
 namespace echofuse::hub {
 
-/// The paper's tracker, sections V-D and V-E: particle PHD filter, its peaks by expectation-maximisation, tracks.
-/// Reference: python/echofuse/reference/hub/track/phd_tracker.py
+/// The paper's tracker, sections V-D and V-E: particle PHD filter, its peaks by expectation-maximisation,
+/// tracks. Reference: python/echofuse/reference/hub/track/phd_tracker.py
 class PhdTracker {
  public:
   /// Also resets. kInvalidConfig: all earlier configurations and the state stay in force.
-  Status configure(const PhdConfig& phd, const estimation::MixtureConfig& em, const TrackManagerConfig& tracks);
+  Status configure(const PhdConfig& phd, const estimation::MixtureConfig& em,
+                   const TrackManagerConfig& tracks);
   void reset();
 
   /// measurements: (m,) [m]. dt_s: [s] > 0 since the last frame.

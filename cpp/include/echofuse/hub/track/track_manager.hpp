@@ -31,7 +31,7 @@ struct TrackManagerConfig {
   float gate_sigma = 4.0f;  ///< [1] kKalman: furthest point in deviations of the innovation, >= 0; 0: no test
   float silent_gate_growth_mps = 0.2f;     ///< [m/s] gate_m grows by this while a track is silent, >= 0
   float silent_gate_max_m = 1.5f;          ///< [m] up to this, >= 0
-  float birth_exclusion_m = 0.3f;          ///< [m] no track begins nearer to another one, >= 0
+  float birth_exclusion_m = 0.5f;          ///< [m] no track begins nearer to another one, >= 0
   int confirm_updates = 3;                 ///< [1] consecutive frames with a point, the first included, >= 1
   float silent_time_min_s = 1.0f;          ///< [s] every confirmed track may be silent so long, >= 0
   float silent_time_per_confirmed = 1.0f;  ///< [1] or this share of the time for which it was confirmed, >= 0
@@ -56,28 +56,28 @@ struct TrackEstimate {
 struct ManagedTrack {
   std::int32_t id = 0;
   link::TrackState state = link::TrackState::kUnconfirmed;
-  int updates = 1;                 ///< consecutive frames with a point, until confirmed
+  int updates = 1;  ///< consecutive frames with a point, until confirmed
   std::int32_t frames_since_update = 0;
-  float confirmed_time_s = 0.0f;   ///< [s] for which it was updated since its confirmation
-  float silent_time_s = 0.0f;      ///< [s] since its last point
-  float motion = 1.0f;             ///< [1] what is left of the motion of a silent track
+  float confirmed_time_s = 0.0f;  ///< [s] for which it was updated since its confirmation
+  float silent_time_s = 0.0f;     ///< [s] since its last point
+  float motion = 1.0f;            ///< [1] what is left of the motion of a silent track
   estimation::ConstantVelocityFilter filter;
 };
 
-/// Tracks from the points of each frame, by their identities and states (section V-E of the sensor-radar paper):
-/// unconfirmed -> confirmed after some consecutive points, dead at the first miss; confirmed -> silent at a miss;
-/// silent -> confirmed at a point, dead after a time. A silent track comes to rest where it was and its gate
-/// grows slowly, so a person who stops keeps the identity.
-/// Reference: python/echofuse/reference/hub/track/track_manager.py
+/// Tracks from the points of each frame, by their identities and states (section V-E of the sensor-radar
+/// paper): unconfirmed -> confirmed after some consecutive points, dead at the first miss; confirmed ->
+/// silent at a miss; silent -> confirmed at a point, dead after a time. A silent track comes to rest where it
+/// was and its gate grows slowly, so a person who stops keeps the identity. Reference:
+/// python/echofuse/reference/hub/track/track_manager.py
 class TrackManager {
  public:
   /// Also resets. kInvalidConfig: the earlier configuration and state stay in force.
   Status configure(const TrackManagerConfig& config);
   void reset();
 
-  /// points: finite. dt_s: [s] > 0 since the last frame. tracks.tracks: filled with all that live, ascending id;
-  /// its time and frame stay the caller's. kTruncated: points beyond kMaxAssignment were ignored, or a track
-  /// could not begin; what is there is valid. kInvalidInput: nothing changes, no tracks.
+  /// points: finite. dt_s: [s] > 0 since the last frame. tracks.tracks: filled with all that live, ascending
+  /// id; its time and frame stay the caller's. kTruncated: points beyond kMaxAssignment were ignored, or a
+  /// track could not begin; what is there is valid. kInvalidInput: nothing changes, no tracks.
   Status process(Span<const TrackEstimate> points, float dt_s, link::Tracks& tracks);
 
   Span<const ManagedTrack> tracks() const { return tracks_.span(); }

@@ -15,7 +15,8 @@ Status KalmanTracker::configure(TrackManagerConfig config) {
 
 void KalmanTracker::reset() { manager_.reset(); }
 
-Status KalmanTracker::process(Span<const estimation::Position> measurements, float dt_s, link::Tracks& tracks) {
+Status KalmanTracker::process(Span<const estimation::Position> measurements, float dt_s,
+                              link::Tracks& tracks) {
   BoundedVector<TrackEstimate, kMaxPointsPerFrame> points;
   for (const estimation::Position& z : measurements.first(std::min(measurements.size(), kMaxPointsPerFrame)))
     ECHOFUSE_CHECK(points.try_push_back(

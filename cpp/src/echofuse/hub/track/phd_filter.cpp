@@ -98,8 +98,8 @@ Status PhdFilter::update(Span<const Position> measurements) {
       explained.add(share);
     }
     ECHOFUSE_CHECK(seeds_.try_push_back({z.x_m, z.y_m, explained.value()}));
-    const auto allowed = std::min(static_cast<std::size_t>(config_.newborn_per_measurement),
-                                  kMaxNewbornParticles / n_used);
+    const auto allowed =
+        std::min(static_cast<std::size_t>(config_.newborn_per_measurement), kMaxNewbornParticles / n_used);
     add_newborn(z, birth_per_m2 / total, allowed);
   }
   for (std::size_t i = 0; i < n_persistent_; ++i) particles_[i].weight = updated_[i];

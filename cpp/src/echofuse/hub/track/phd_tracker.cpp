@@ -47,8 +47,8 @@ Status PhdTracker::process(Span<const estimation::Position> measurements, float 
   BoundedVector<TrackEstimate, kMaxTargets> peaks;
   for (const estimation::MixtureComponent& c : mixture_.components) {
     if (!(c.share > 0.0f)) continue;
-    ECHOFUSE_CHECK(peaks.try_push_back({c.x_m, c.y_m, c.vx_mps, c.vy_mps, c.covariance_xx_m2,
-                                        c.covariance_xy_m2, c.covariance_yy_m2}));
+    ECHOFUSE_CHECK(peaks.try_push_back(
+        {c.x_m, c.y_m, c.vx_mps, c.vy_mps, c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_yy_m2}));
   }
 
   (void)phd_.resample();

@@ -15,8 +15,8 @@ inline void show_tracks(const TapSink& sink, const link::Tracks& tracks) {
   std::size_t n = 0;
   for (const link::Track& track : tracks.tracks) {
     for (const float value :
-         {static_cast<float>(track.id), static_cast<float>(static_cast<int>(track.state)), track.x_m, track.y_m,
-          track.vx_mps, track.vy_mps, static_cast<float>(track.frames_since_update)})
+         {static_cast<float>(track.id), static_cast<float>(static_cast<int>(track.state)), track.x_m,
+          track.y_m, track.vx_mps, track.vy_mps, static_cast<float>(track.frames_since_update)})
       rows[n++] = value;
   }
   sink(TapId::kTracks, {rows.data(), n});

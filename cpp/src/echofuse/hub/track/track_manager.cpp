@@ -35,7 +35,8 @@ ConstantVelocityFilter::Covariance2 isotropic(float std_m) {
 
 const char* invalid_field(const TrackManagerConfig& config) {
   constexpr float kMost = 1e6f;
-  if (config.association != AssociationRule::kPerPair && config.association != AssociationRule::kHypothesisCost)
+  if (config.association != AssociationRule::kPerPair &&
+      config.association != AssociationRule::kHypothesisCost)
     return "association";
   if (config.update != TrackUpdate::kEstimate && config.update != TrackUpdate::kKalman) return "update";
   if (!within(config.gate_m, 1e-6f, kMost)) return "gate_m";
@@ -115,8 +116,8 @@ void TrackManager::associate(Span<const TrackEstimate> points) {
     associate_by_hypothesis(points);
 }
 
-/// A pair costs its distance, at most the track's gate; a pair at the gate is none. So the assignment weighs a far
-/// pair against no pair at all.
+/// A pair costs its distance, at most the track's gate; a pair at the gate is none. So the assignment weighs
+/// a far pair against no pair at all.
 void TrackManager::associate_per_pair(Span<const TrackEstimate> points) {
   const std::size_t n = points.size();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -146,7 +147,8 @@ void TrackManager::associate_by_hypothesis(Span<const TrackEstimate> points) {
   ECHOFUSE_CHECK(status == Status::kOk);
   float total = 0.0f;
   for (std::size_t i = 0; i < n_associated_; ++i)
-    if (point_of_track_[i] != kUnassigned) total += cost_[i * n + static_cast<std::size_t>(point_of_track_[i])];
+    if (point_of_track_[i] != kUnassigned)
+      total += cost_[i * n + static_cast<std::size_t>(point_of_track_[i])];
   const auto n_pairs = static_cast<float>(std::min(n_associated_, n));
   if (total <= config_.cost_max_m * n_pairs) return;
   for (std::size_t i = 0; i < n_associated_; ++i) {
@@ -186,14 +188,16 @@ bool TrackManager::hit(ManagedTrack& track, const TrackEstimate& point, float dt
   return true;
 }
 
-/// False when the track dies of this frame without a point.
+/// False when the track dies of this frame without a point. Times are multiples of the frame's duration, so
+/// they are compared half a frame apart.
 bool TrackManager::miss(ManagedTrack& track, float dt_s) const {
   if (track.state == TrackState::kUnconfirmed) return false;
   track.state = TrackState::kSilent;
   ++track.frames_since_update;
   track.silent_time_s += dt_s;
   const float earned = config_.silent_time_per_confirmed * track.confirmed_time_s;
-  return track.silent_time_s <= std::min(std::max(earned, config_.silent_time_min_s), config_.silent_time_max_s);
+  const float limit = std::min(std::max(earned, config_.silent_time_min_s), config_.silent_time_max_s);
+  return track.silent_time_s <= limit + 0.5f * dt_s;
 }
 
 /// False when there is no room for a track that should begin.

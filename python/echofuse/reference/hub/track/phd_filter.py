@@ -1,7 +1,7 @@
 """Particle PHD filter with measurement-driven birth.
 
-Mahler, IEEE Trans. Aerospace and Electronic Systems 39(4), 2003; persistent and newborn targets apart as in Ristic,
-Clark, Vo & Vo, IEEE Trans. Aerospace and Electronic Systems 48(2), 2012.
+Mahler, IEEE Trans. Aerospace and Electronic Systems 39(4), 2003; persistent and newborn targets apart as in
+Ristic, Clark, Vo & Vo, IEEE Trans. Aerospace and Electronic Systems 48(2), 2012.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ class PhdUpdate(NamedTuple):
 class PhdFilter:
     """Particles (n, 5): x, vx, y, vy, weight; the sum of weights is the expected number of targets.
 
-    Random numbers are drawn in this order: ``predict``, a normal for x and one for y of each particle; ``update``,
-    four normals (x, y, vx, vy) for each newborn particle, measurement by measurement, then 32 bits that seed the
-    search for peaks (`peak_seed`); ``resample``, one uniform number.
+    Random numbers are drawn in this order: ``predict``, a normal for x and one for y of each particle;
+    ``update``, four normals (x, y, vx, vy) for each newborn particle, measurement by measurement, then 32
+    bits that seed the search for peaks (`peak_seed`); ``resample``, one uniform number.
     """
 
     def __init__(self, config: PhdConfig, limits: PhdLimits) -> None:
@@ -78,7 +78,9 @@ class PhdFilter:
     def predict(self, dt_s: float) -> NDArray[np.float64]:
         """Move every particle by ``dt_s``; two normals each (x, y), velocity changed in mid-step."""
         n = len(self.particles)
-        kicks = self.random.normals(2 * n).reshape(n, 2) * np.sqrt(self.config.acceleration_density_m2ps3 * dt_s)
+        kicks = self.random.normals(2 * n).reshape(n, 2) * np.sqrt(
+            self.config.acceleration_density_m2ps3 * dt_s
+        )
         moved = self.particles.copy()
         moved[:, X] += dt_s * (self.particles[:, VX] + 0.5 * kicks[:, 0])
         moved[:, Y] += dt_s * (self.particles[:, VY] + 0.5 * kicks[:, 1])
@@ -118,8 +120,8 @@ class PhdFilter:
     def resample(self) -> Resampling:
         """Draw the particles of the next frame, as many as the number of targets asks for; the mass stays.
 
-        square_root: drawn in proportion to the root of the weights and weighted by the root, so that the few light
-        particles of a missed or a new target live on; proportional: all of one weight afterwards.
+        square_root: drawn in proportion to the root of the weights and weighted by the root, so that the few
+        light particles of a missed or a new target live on; proportional: all of one weight afterwards.
         """
         wanted = self.config.particles_per_target * max(1, self.number)
         n_out = min(wanted, self.limits.max_particles)

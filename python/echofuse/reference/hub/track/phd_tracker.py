@@ -29,7 +29,12 @@ class PhdTracker:
     """Keeps the filter and the tracks."""
 
     def __init__(
-        self, phd: PhdConfig, em: MixtureConfig, tracks: TrackManagerConfig, limits: PhdLimits, max_tracks: int
+        self,
+        phd: PhdConfig,
+        em: MixtureConfig,
+        tracks: TrackManagerConfig,
+        limits: PhdLimits,
+        max_tracks: int,
     ) -> None:
         self.phd = PhdFilter(phd, limits)
         self.em = em
@@ -61,5 +66,6 @@ def estimates(peaks: Mixture | None) -> list[TrackEstimate]:
     if peaks is None:
         return []
     return [
-        TrackEstimate(peaks.mean[c], peaks.velocity[c], peaks.covariance[c]) for c in np.flatnonzero(peaks.share > 0.0)
+        TrackEstimate(peaks.mean[c], peaks.velocity[c], peaks.covariance[c])
+        for c in np.flatnonzero(peaks.share > 0.0)
     ]

@@ -1,8 +1,9 @@
 """Tracks from the points of each frame: association and the states unconfirmed, confirmed, silent, dead.
 
-After section V-E of the sensor-radar paper. Deviations, each with the paper's form as a choice or a limit case: a pair
-is judged by its own distance (the paper first accepts all pairs together when their sum is small, which lets one
-track jump across the room), a silent track loses its velocity, and its gate grows while it is silent.
+After section V-E of the sensor-radar paper. Deviations, each with the paper's form as a choice or a limit
+case: a pair is judged by its own distance (the paper first accepts all pairs together when their sum is
+small, which lets one track jump across the room), a silent track loses its velocity, and its gate grows while
+it is silent.
 """
 
 from __future__ import annotations
@@ -146,20 +147,23 @@ class TrackManager:
         return bool(innovation @ np.linalg.solve(covariance, innovation) < self.config.gate_sigma**2)
 
     def _silence_margin(self, track: Track, dt_s: float) -> float:
-        return abs((track.silent_time_s + dt_s) / self._silence_limit(track) - 1.0)
+        return abs(track.silent_time_s + 0.5 * dt_s - self._silence_limit(track)) / dt_s
 
     def _silence_limit(self, track: Track) -> float:
         earned = self.config.silent_time_per_confirmed * track.confirmed_time_s
         return min(max(earned, self.config.silent_time_min_s), self.config.silent_time_max_s)
 
     def _miss(self, track: Track, dt_s: float) -> bool:
-        """Count a frame without a point; False when the track dies of it."""
+        """Count a frame without a point; False when the track dies of it.
+
+        Times are multiples of the frame's duration, so they are compared half a frame apart.
+        """
         if track.state == UNCONFIRMED:
             return False
         track.state = SILENT
         track.frames_since_update += 1
         track.silent_time_s += dt_s
-        return track.silent_time_s <= self._silence_limit(track)
+        return track.silent_time_s <= self._silence_limit(track) + 0.5 * dt_s
 
     def _hit(self, track: Track, point: TrackEstimate, dt_s: float) -> bool:
         if self.config.update == "kalman":

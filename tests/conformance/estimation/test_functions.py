@@ -1,0 +1,79 @@
+"""Kernel, resampling, assignment, Kalman filter: core against reference."""
+
+import numpy as np
+import pytest
+
+from echofuse import _core
+from echofuse.conformance.comparison import Scoreboard
+from echofuse.reference.estimation.assignment import assign, assignment_margin
+from echofuse.reference.estimation.gaussian import gaussian_kernel
+from echofuse.reference.estimation.kalman import ConstantVelocityFilter
+from echofuse.reference.estimation.resampling import systematic_resample
+
+SEEDS = range(20)
+
+
+def test_gaussian_kernel() -> None:
+    board = Scoreboard()
+    squared = np.linspace(0.0, 26.0, 20001, dtype=np.float32)
+    expected = gaussian_kernel(squared.astype(np.float64))
+    board.floats(
+        "", "kernel", "", _core.gaussian_kernel(squared), expected, "estimation.gaussian", scale=expected
+    )
+    assert [row.failures for row in board.rows()] == [[]]
+
+
+@pytest.mark.parametrize("n_out", [1, 7, 500, 2048])
+def test_resampling(n_out: int) -> None:
+    board = Scoreboard()
+    for seed in SEEDS:
+        rng = np.random.default_rng(seed)
+        weights = rng.exponential(size=rng.integers(1, 3000)).astype(np.float32) ** 3
+        weights[rng.random(len(weights)) < 0.2] = 0.0
+        weights[rng.integers(len(weights))] = 1.0
+        uniform = float(np.float32(rng.random()))
+        status, got = _core.systematic_resample(weights, uniform, n_out)
+        assert status == _core.Status.ok
+        expected = systematic_resample(weights.astype(np.float64), uniform, n_out)
+        board.decisions("", "indices", f"seed {seed}", got, expected.indices, expected.margin)
+    assert [row.failures for row in board.rows()] == [[]]
+    assert board.rows()[0].excused < 0.1 * board.rows()[0].values
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 8), (8, 3), (12, 12), (32, 32), (5, 32)])
+def test_assignment(shape: tuple[int, int]) -> None:
+    board = Scoreboard()
+    for seed in SEEDS:
+        cost = np.random.default_rng(seed).uniform(0.0, 3.0, shape).astype(np.float32)
+        status, got = _core.assign(cost)
+        assert status == _core.Status.ok
+        exact = cost.astype(np.float64)
+        expected = assign(exact)
+        margin = assignment_margin(exact, expected, np.full(len(cost), 1e3)) * 1e3
+        board.decisions("", "columns", f"seed {seed}", got, expected, margin)
+    assert [row.failures for row in board.rows()] == [[]]
+
+
+def test_kalman() -> None:
+    board = Scoreboard()
+    for seed in SEEDS:
+        rng = np.random.default_rng(seed)
+        root = rng.normal(size=(4, 4)).astype(np.float32)
+        state, covariance = rng.normal(0.0, 5.0, 4).astype(np.float32), root @ root.T
+        core = _core.ConstantVelocityFilter(state, covariance)
+        reference = ConstantVelocityFilter(state.astype(np.float64), covariance.astype(np.float64))
+        for _ in range(20):
+            dt_s, density, decay = rng.uniform(0.02, 0.3, 3).astype(np.float32).tolist()
+            core.predict(dt_s, density, decay)
+            reference.predict(dt_s, density, decay)
+            small = rng.normal(0.0, 0.2, (2, 2)).astype(np.float32)
+            noise = (small @ small.T + 0.01 * np.eye(2)).astype(np.float32)
+            z = rng.normal(0.0, 5.0, 2).astype(np.float32)
+            core.update(float(z[0]), float(z[1]), noise)
+            reference.update(z.astype(np.float64), noise.astype(np.float64))
+        where = f"seed {seed}"
+        board.floats("", "state", where, core.state, reference.state, "estimation.kalman.state")
+        board.floats(
+            "", "covariance", where, core.covariance, reference.covariance, "estimation.kalman.covariance"
+        )
+    assert [row.failures for row in board.rows()] == [[], []]
