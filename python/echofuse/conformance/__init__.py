@@ -1,0 +1,42 @@
+"""Reference against target, tap by tap: is what runs on a device what the papers say?"""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+__all__ = ["CASES", "conform"]
+
+CASES = ("sensor-radar",)
+Progress = Callable[[Iterator[None], str, int], Iterator[None]]
+
+
+def conform(
+    cases: Sequence[str] = CASES,
+    *,
+    seeds: int = 20,
+    recording: Path | None = None,
+    out: Path | None = None,
+    progress: Progress | None = None,
+) -> bool:
+    """Compare the library with its reference and print the table; whether all agreed, and every tap was compared.
+
+    Parameters
+    ----------
+    cases
+        Of `CASES`.
+    seeds
+        How many simulated inputs.
+    recording
+        A recording to compare on as well (with its site inside); by default the real walk, where it is there.
+    out
+        Folder for ``conformance.json`` and ``tolerances.txt``.
+    progress
+        Wraps the steps for a progress bar: called with (steps, description, how many).
+    """
+    from echofuse.errors import InputError, problem
+
+    for case in cases:
+        if case not in CASES:
+            raise InputError(problem("conform", case, f"a case of {', '.join(CASES)}"))
+    from echofuse.conformance.command import conform_sensor_radar
+
+    return conform_sensor_radar(seeds=seeds, recording=recording, out=out, progress=progress)

@@ -7,6 +7,9 @@ from typing import Any
 Settings = Mapping[str, Any]  # "stage.field" or "field" -> value, a choice as its word
 
 
+SELECTING = ("selection.", "ellipse.")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Choice:
     """One row of the table."""
@@ -14,7 +17,15 @@ class Choice:
     name: str
     settings: Settings = field(default_factory=dict)
     learns: bool = False  # nobody gives the background: the node learns it
-    equation_residual: bool = False  # hub: only where all nodes share one transmitter
+    shared_transmitter: bool = False  # hub: possible only where all nodes share one
+
+    def selects(self, number: int, frame: int) -> bool:
+        """Whether the selection, by far the slowest stage of the reference, is compared in a frame of an input.
+
+        One frame of every input under choices that bear on it, before or after a track is confirmed; else of some.
+        """
+        bears = self.name == "default" or any(key.startswith(SELECTING) for key in self.settings)
+        return frame == (1, 5, 5, 8)[number % 4] and (bears or number % 4 == 1)
 
 
 def _one(key: str, *values: Any, learns: bool = False) -> Iterator[Choice]:
@@ -95,5 +106,65 @@ NODE_CHOICES: tuple[Choice, ...] = (
             "cfar.method": "global_average",
             "direct_path.search": "threshold_crossing",
         },
+    ),
+)
+
+ALL_TUPLES: Settings = {"selection.method": "all_tuples"}
+TUPLES_OF_4: Settings = {
+    **ALL_TUPLES,
+    "selection.nodes_per_tuple": 4,
+}  # fewer, for the reference takes its time
+
+HUB_CHOICES: tuple[Choice, ...] = (
+    Choice(name="default"),
+    *_one("selection.method", "all_tuples"),
+    *_one("selection.nodes_per_tuple", 4),
+    Choice(name="all tuples of 4", settings={**TUPLES_OF_4, "selection.min_weight": 40.0}),
+    Choice(
+        name="selection.residual=equation_residual",
+        settings={
+            **TUPLES_OF_4,
+            "selection.residual": "equation_residual",
+            "selection.max_equation_residual_m3": 5.0,
+        },
+        shared_transmitter=True,
+    ),
+    *_one("selection.track_aided", False),
+    *_one("selection.echo_tail_m", 1.5),
+    Choice(name="ellipse.refinement=none", settings={**TUPLES_OF_4, "ellipse.refinement": "none"}),
+    *_one("ellipse.body_radius_m", 0.2),
+    *_one("ellipse.robust_scale_m", 0.0),
+    *(
+        Choice(
+            name=f"point_clusters.distance={kind}", settings={**TUPLES_OF_4, "point_clusters.distance": kind}
+        )
+        for kind in ("centroid", "minimum", "maximum")
+    ),
+    *_one("tracker", "kalman"),
+    *_one("phd.resampling", "proportional"),
+    *_one("phd.mass_average_frames", 3),
+    *_one("em.initialisation", "k_means_plus_plus"),
+    *_one("em.background_density_per_m2", 0.0),
+    *_one("tracks.association", "hypothesis_cost"),
+    *_one("tracks.update", "kalman"),
+    Choice(
+        name="kalman, hypothesis_cost",
+        settings={"tracker": "kalman", "tracks.association": "hypothesis_cost"},
+    ),
+    Choice(
+        name="the paper's",
+        settings={
+            **TUPLES_OF_4,
+            "ellipse.refinement": "none",
+            "selection.min_weight": 40.0,
+            "selection.residual": "equation_residual",
+            "selection.max_equation_residual_m3": 5.0,
+            "selection.track_aided": False,
+            "phd.resampling": "proportional",
+            "em.initialisation": "k_means_plus_plus",
+            "em.background_density_per_m2": 0.0,
+            "tracks.association": "hypothesis_cost",
+        },
+        shared_transmitter=True,
     ),
 )

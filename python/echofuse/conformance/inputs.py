@@ -11,7 +11,7 @@ from echofuse import _core
 from echofuse.conformance.choices import LEARNING, Choice, configure
 from echofuse.pipeline import node_config
 from echofuse.recording import NodeRecording, Recording
-from echofuse.simulation.scene import RadarNode, sensor_radar_scene
+from echofuse.simulation.scene import RadarNode, Scene, sensor_radar_scene
 from echofuse.simulation.sensor_radar import SensorRadarSimulation, case_study_people
 from echofuse.site import Site, parse_site
 
@@ -20,7 +20,13 @@ JUDGED_SCANS = 3  # of each input; a node that learns takes others before them
 LEARNT_SCANS = int(LEARNING["clutter.learning_scans"])
 MAX_SCANS = JUDGED_SCANS + LEARNT_SCANS
 STRETCHES = 3  # of each node of a recording
-SLIPS = (0, 0, 12, -2, 5)  # [sample] by which the last scan of a seed is late: over and under the search's reach
+SLIPS = (
+    0,
+    0,
+    12,
+    -2,
+    5,
+)  # [sample] by which the last scan of a seed is late: over and under the search's reach
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,19 +68,23 @@ def simulated_inputs(seeds: int) -> Iterator[NodeInput]:
         first = max(0, first)
         scans = np.stack([simulation.frame(first + k).scans[which] for k in range(MAX_SCANS)])
         scans[-1] = np.roll(scans[-1], SLIPS[seed % len(SLIPS)])
-        config = _core.SensorRadarNodeConfig(
-            node_id=node.node_id,
-            n_samples=scene.radio.n_samples,
-            sample_rate_hz=scene.radio.sample_rate_hz,
-            first_sample_s=scene.first_sample_s(node),
-            baseline_m=node.baseline_m,
-        )
         yield NodeInput(
             where=f"seed {seed} ({'own' if seed % 2 else 'shared'} Tx, {node.name}, frames from {first})",
-            base=config,
+            base=node_config_of(scene, node),
             empty_room=simulation.reference(which, EMPTY_ROOM_SCANS),
             scans=scans,
         )
+
+
+def node_config_of(scene: Scene, node: RadarNode) -> "_core.SensorRadarNodeConfig":
+    """Return the configuration of a scene's node."""
+    return _core.SensorRadarNodeConfig(
+        node_id=node.node_id,
+        n_samples=scene.radio.n_samples,
+        sample_rate_hz=scene.radio.sample_rate_hz,
+        first_sample_s=scene.first_sample_s(node),
+        baseline_m=node.baseline_m,
+    )
 
 
 def crossing_frame(node: RadarNode, simulation: SensorRadarSimulation) -> int:

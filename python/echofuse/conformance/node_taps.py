@@ -35,7 +35,9 @@ NODE_TAPS = (
 SCAN_PERIOD_US = 100_000
 
 
-def conform_node(board: Scoreboard, choice: Choice, target: ConformanceTarget, inputs: Sequence[NodeInput]) -> None:
+def conform_node(
+    board: Scoreboard, choice: Choice, target: ConformanceTarget, inputs: Sequence[NodeInput]
+) -> None:
     """Feed the same scans to target and reference under one choice."""
     for tap in NODE_TAPS:
         board.row(choice.name, tap)
@@ -71,7 +73,9 @@ class _Scan:
         """Whether the next scan may be compared as well."""
         self.answer, self.got = answer, answer.taps
         self.expected, self.margins = report.taps, report.margins
-        self.peak = float(np.max(np.abs(self.expected["aligned"])))  # what residuals are differences of [count]
+        self.peak = float(
+            np.max(np.abs(self.expected["aligned"]))
+        )  # what residuals are differences of [count]
         missing = [tap for tap in NODE_TAPS if tap not in self.got]
         for tap in missing:
             self.board.row(self.choice, tap).failures.append(f"{self.where}: the target shows no such tap")
@@ -107,7 +111,11 @@ class _Scan:
         return self.board.decisions(self.choice, tap, self.where, got, expected, margin)
 
     def _direct_path(self) -> bool:
-        got, expected, margin = self.got["direct_path"], self.expected["direct_path"], self.margins["direct_path"]
+        got, expected, margin = (
+            self.got["direct_path"],
+            self.expected["direct_path"],
+            self.margins["direct_path"],
+        )
         return (
             self._decisions("direct_path", got[0], expected[0], margin)
             and self._floats("direct_path", "toa", got[1], expected[1], margin=margin)

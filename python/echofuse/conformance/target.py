@@ -30,6 +30,36 @@ class NodeTarget(Protocol):
         """Take scan (n_samples,) [count]; an answer when it completes the pulses of a scan."""
 
 
+@dataclass(frozen=True)
+class Report:
+    """One node's report on one scan, as the hub gets it."""
+
+    node_id: int
+    frame: int  # counts the node's scans
+    delay_s: NDArray[np.float32]  # (n,) ascending
+    weight: NDArray[np.float32]  # (n,)
+
+
+@dataclass
+class HubAnswer:
+    """What a hub said about one frame."""
+
+    time_us: int
+    frame: int
+    tracks: NDArray[np.void]  # fields of link::Track
+    taps: Taps = field(default_factory=dict)
+
+
+class HubTarget(Protocol):
+    """A configured hub."""
+
+    def receive(self, report: Report, now_us: int) -> None:
+        """Take a report, good or bad."""
+
+    def poll(self, now_us: int) -> HubAnswer | None:
+        """Work on the oldest frame that is closed by now, if there is one."""
+
+
 class ConformanceTarget(Protocol):
     """A machine that runs the pipeline."""
 
@@ -37,6 +67,9 @@ class ConformanceTarget(Protocol):
 
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """Return a node configured and forgetful."""
+
+    def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
+        """Return a hub configured and forgetful."""
 
 
 class InProcessNode:
@@ -59,6 +92,25 @@ class InProcessNode:
         return NodeAnswer(_columns(detections, "delay_s", "weight"), taps)
 
 
+class InProcessHub:
+    """The library's hub in this process."""
+
+    def __init__(self, config: "_core.SensorRadarHubConfig") -> None:
+        self._hub = _core.SensorRadarHub()
+        _expect(self._hub.configure(config), f"configure, {config.invalid_field()}")
+
+    def receive(self, report: Report, now_us: int) -> None:
+        """See `HubTarget`."""
+        status = self._hub.receive(report.node_id, report.frame, report.delay_s, report.weight, now_us)
+        _expect(status, "receive", _core.Status.invalid_input)
+
+    def poll(self, now_us: int) -> HubAnswer | None:
+        """See `HubTarget`."""
+        status, closed, taps = self._hub.poll_with_taps(now_us)
+        _expect(status, "poll", _core.Status.truncated)
+        return None if closed is None else HubAnswer(*closed, taps)
+
+
 class InProcessTarget:
     """The library in this process."""
 
@@ -67,6 +119,10 @@ class InProcessTarget:
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """See `ConformanceTarget`."""
         return InProcessNode(config)
+
+    def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
+        """See `ConformanceTarget`."""
+        return InProcessHub(config)
 
 
 def _expect(status: Any, what: str, *others: Any) -> None:

@@ -1,0 +1,63 @@
+"""What `echofuse conform sensor-radar` does."""
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from echofuse import recording as recordings
+from echofuse.conformance.sensor_radar import Plan, Scores, real_walk, steps
+from echofuse.conformance.table import format_scores, format_tolerances, write_json
+from echofuse.conformance.target import ConformanceTarget, InProcessTarget
+from echofuse.display.progress import progress as bar
+from echofuse.errors import InputError, problem
+from echofuse.recording import Recording
+
+Progress = Callable[[Iterator[None], str, int], Iterator[None]]
+
+
+def conform_sensor_radar(
+    *, seeds: int, recording: Path | None, out: Path | None, progress: Progress | None = None
+) -> bool:
+    """Compare, print and write; see `echofuse.conformance.conform`."""
+    target = InProcessTarget()
+    walk, about_walk = _recording(recording)
+    plan = Plan(seeds=seeds, recording=walk)
+    began_s = time.monotonic()
+    scores = _run(target, plan, progress)
+    took_s = time.monotonic() - began_s
+    print(format_scores(scores.boards))
+    print()
+    print(format_tolerances())
+    print()
+    verdict = "all agree with the reference" if scores.passed else "NOT all agree with the reference"
+    rows = sum(len(board.rows()) for board in scores.boards.values())
+    print(
+        f"{target.name}: {rows} taps of choices over {seeds} seeds and {about_walk}: {verdict} ({took_s:.0f} s)"
+    )
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        about = {"case": "sensor-radar", "target": target.name, "seeds": seeds, "recording": about_walk}
+        write_json(out / "conformance.json", scores.boards, about)
+        (out / "tolerances.txt").write_text(format_tolerances() + "\n", encoding="utf-8")
+        print(f"wrote {out / 'conformance.json'}")
+    return scores.passed
+
+
+def _recording(path: Path | None) -> tuple[Recording | None, str]:
+    if path is not None:
+        loaded = recordings.read(path)
+        if not loaded.site_toml.strip():
+            raise InputError(problem(path, "/site", "a site file inside"))
+        return loaded, str(path)
+    walk = real_walk()
+    if walk is None:
+        print("The real walk was skipped: no p410-triangle in ../shared/data or $ECHOFUSE_DATA.")
+        return None, "no recording (the real walk was skipped)"
+    return walk, "the real walk"
+
+
+def _run(target: ConformanceTarget, plan: Plan, progress: Progress | None) -> Scores:
+    scores = Scores()
+    for _ in (progress or bar)(steps(target, plan, scores), "conforming", plan.steps()):
+        pass
+    return scores
