@@ -20,14 +20,10 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"echofuse {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    run = commands.add_parser(
-        "run", help="simulate a case (or a site of your own) and track what happens in it"
-    )
+    run = commands.add_parser("run", help="simulate a case or a site of your own, and track the people in it")
     run.add_argument("case", help=f"one of {', '.join(CASES)}, or a SITE.toml")
     run.add_argument("--seed", type=_natural, default=0, help="of everything random (default 0)")
-    run.add_argument(
-        "--seeds", type=_seed_range, help="FIRST-LAST: a table over many seeds instead of a report"
-    )
+    run.add_argument("--seeds", type=_seed_range, help="FIRST-LAST: a table over many seeds, no report")
     run.add_argument("--people", type=_people, default=1, help="how many people walk, 0 to 5 (default 1)")
     run.add_argument("--out", type=Path, help="folder of the run (default runs/CASE-SEED)")
     run.add_argument("--no-report", action="store_true", help="tables only, no pictures")
@@ -43,16 +39,14 @@ def build_parser() -> argparse.ArgumentParser:
 
     import_ = commands.add_parser("import", help="turn other people's recordings into ours")
     import_.add_argument("source", type=Path, help="a logger file, or a folder with one file a node")
-    import_.add_argument(
-        "--site", type=Path, help="site file with the nodes' positions (default: a known example)"
-    )
+    import_.add_argument("--site", type=Path, help="site file with the positions (default: a known example)")
     import_.add_argument("--out", type=Path, required=True, help="the HDF5 file to write")
 
     conform = commands.add_parser("conform", help="compare the library with its NumPy reference, tap by tap")
     conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CASES)} (default: all)")
     conform.add_argument("--seeds", type=_natural, default=20, help="how many seeds (default 20)")
     conform.add_argument(
-        "--recording", type=Path, help="a recording to conform on as well (default: the real walk)"
+        "--recording", type=Path, help="conform on this recording too (default: the real walk)"
     )
     conform.add_argument("--out", type=Path, help="folder for conformance.json")
 
@@ -60,9 +54,7 @@ def build_parser() -> argparse.ArgumentParser:
     plan.add_argument("site", type=Path)
     plan.add_argument("--out", type=Path, help="folder for the map (default plans/SITE)")
 
-    bench = commands.add_parser(
-        "bench", help="ratios of the library to the NumPy reference, measured in one run"
-    )
+    bench = commands.add_parser("bench", help="the library against the NumPy reference, as ratios")
     bench.add_argument("--out", type=Path, help="folder for bench.json")
     return parser
 

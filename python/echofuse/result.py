@@ -1,4 +1,4 @@
-"""What a run of the `sensor_radar` pipeline leaves behind: the tables that reports, metrics and files are made of."""
+"""What a run of the `sensor_radar` pipeline leaves behind: the tables of reports, metrics and files."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any

@@ -3,7 +3,7 @@
 import json
 import math
 from argparse import Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +16,15 @@ from echofuse.recording import Recording, read, write
 from echofuse.result import RunResult
 from echofuse.site import Site, example_site, load_site, parse_site
 
+#: What `run --seeds` prints of each seed.
+SEED_COLUMNS = (
+    "rmse_m",
+    "p80_m",
+    "one_track_fraction",
+    "count_right_fraction",
+    "false_track_fraction",
+    "bound_ratio",
+)
 TRACK_STATES = ("unconfirmed", "confirmed", "silent")
 
 
@@ -57,9 +66,7 @@ def verify(options: Namespace) -> int:
         return 1
     if len(differs):
         time_s = recording.outputs.frame_time_us[differs[0]] * 1e-6
-        print(
-            f"verify: {len(differs)} of {same} frames differ, the first is frame {differs[0]} at {time_s:.3f} s"
-        )
+        print(f"verify: {len(differs)} of {same} frames differ, first frame {differs[0]} at {time_s:.3f} s")
         return 1
     print(f"verify: {same} frames, all bytes the same (target {recording.outputs.target})")
     return 0
@@ -165,21 +172,18 @@ def _simulated(site: Site, case: str, people: int, seed: int) -> Recording:
 
 def _run_seeds(options: Namespace) -> int:
     """Run many seeds, print one line each and their mean."""
-    site, name = _site_of_case(options.case)
+    site, _ = _site_of_case(options.case)
     rows: list[dict[str, float]] = []
     baselines: list[dict[str, float]] = []
-    columns = (
-        "rmse_m", "p80_m", "one_track_fraction", "count_right_fraction", "false_track_fraction", "bound_ratio",
-    )  # fmt: skip
-    print("seed  " + "  ".join(f"{column:>20s}" for column in columns))
+    print("seed  " + "  ".join(f"{column:>20s}" for column in SEED_COLUMNS))
     for seed in progress(options.seeds, "seeds", len(options.seeds)):
         result = process_recording(_simulated(site, options.case, options.people, seed), site)
         rows.append(result.metrics)
         baselines.append(result.baseline_metrics)
-        print(f"{seed:4d}  " + _cells(result.metrics, columns))
+        print(f"{seed:4d}  " + _cells(result.metrics))
     for label, table in (("mean", rows), ("KF  ", baselines)):
-        mean = {column: float(np.mean([row[column] for row in table])) for column in columns}
-        print(f"{label}  " + _cells(mean, columns))
+        mean = {column: float(np.mean([row[column] for row in table])) for column in SEED_COLUMNS}
+        print(f"{label}  " + _cells(mean))
     if options.out:
         _make_folder(options.out)
         _write_json(
@@ -189,8 +193,8 @@ def _run_seeds(options: Namespace) -> int:
     return 0
 
 
-def _cells(metrics: dict[str, float], columns: Sequence[str]) -> str:
-    return "  ".join(f"{metrics[column]:20.4f}" for column in columns)
+def _cells(metrics: dict[str, float]) -> str:
+    return "  ".join(f"{metrics[column]:20.4f}" for column in SEED_COLUMNS)
 
 
 def _finish(result: RunResult, folder: Path, *, report: bool) -> int:

@@ -40,12 +40,11 @@ METRICS: dict[str, tuple[str, str]] = {
     "standing_wander_m": ("Farthest that a track went after the walk", ""),
     "ospa_m": ("OSPA distance", ""),
     "gospa_m": ("GOSPA distance", ""),
+    "path_error_std_m": ("Deviation of the nodes' measured paths", ""),
     "frames_evaluated": ("Frames evaluated", ""),
 }
 #: Counters that say how much was done rather than that something went wrong.
-WORK_DONE = frozenset(
-    {"scans", "frames", "reports", "received", "closed_frames", "measurements", "points", "learning"}
-)
+WORK_DONE = frozenset({"scans", "learning_scans", "accepted", "frames", "tuples"})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ Names, types and defaults all come from the classes: this module knows none.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol, cast
 
 import numpy as np
@@ -31,13 +31,17 @@ class Config(Protocol):
         ...
 
 
+def _link_budget() -> Any:
+    from echofuse import _core
+
+    return _core.CoverageConfig()
+
+
+@dataclass
 class PlanConfig:
     """What `echofuse plan` reads of [pipeline]: the table of the link budget."""
 
-    def __init__(self) -> None:
-        from echofuse import _core
-
-        self.coverage = _core.CoverageConfig()
+    coverage: Any = field(default_factory=_link_budget)
 
     def fields(self) -> tuple[str, ...]:
         """Return the names of all fields."""

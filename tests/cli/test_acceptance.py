@@ -1,0 +1,50 @@
+"""The issue's own commands with the numbers that they must reach."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from echofuse.cli import main
+from echofuse.recording import read
+
+DATA = Path(os.environ.get("ECHOFUSE_DATA") or Path(__file__).parents[3] / "shared" / "data")
+WALK = DATA / "p410-triangle"
+
+
+@pytest.mark.skipif(not WALK.is_dir(), reason=f"the real walk is not at hand: no folder {WALK}")
+def test_the_real_walk(tmp_path: Path) -> None:
+    recording = tmp_path / "walk.h5"
+    assert main(["import", str(WALK), "--out", str(recording)]) == 0
+    assert main(["process", str(recording), "--no-report", "--out", str(tmp_path)]) == 0
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    assert metrics["across_p50_m"] <= 0.06
+    assert metrics["across_p90_m"] <= 0.20
+    assert metrics["confirmed_fraction"] >= 0.85
+    assert metrics["second_track_fraction"] <= 0.05
+    # The person stops at about scan 740: some scans later the track is silent and stays where it is.
+    tracks = _tracks(tmp_path / "recording.h5")
+    late = tracks[tracks["frame"] >= 780]
+    assert len(late) > 200
+    assert not np.any(late["state"] == 1)
+    assert np.ptp(late["x_m"]) < 0.3
+    assert np.ptp(late["y_m"]) < 0.3
+
+
+@pytest.mark.slow
+def test_one_person_over_the_seeds(tmp_path: Path) -> None:
+    assert main(["run", "sensor-radar", "--seeds", "0-19", "--out", str(tmp_path)]) == 0
+    rows = json.loads((tmp_path / "seeds.json").read_text()).values()
+    assert np.mean([row["rmse_m"] for row in rows]) <= 0.15
+    assert np.mean([row["p80_m"] for row in rows]) <= 0.25
+    assert np.mean([row["one_track_fraction"] for row in rows]) >= 0.95
+    assert np.mean([row["false_track_fraction"] for row in rows]) <= 0.01
+
+
+def _tracks(path: Path) -> NDArray[np.void]:
+    outputs = read(path).outputs
+    assert outputs is not None
+    return outputs.tracks
