@@ -42,6 +42,8 @@ void bind_alignment(py::module_& m) {
   ConfigBinder<AlignmentConfig>(m, "AlignmentConfig", "Alignment of scans with the background.")
       .field("method", &AlignmentConfig::method, "how finely")
       .field("max_shift_samples", &AlignmentConfig::max_shift_samples, "[sample] searched on each side")
+      .field("window_samples", &AlignmentConfig::window_samples,
+             "[sample] compared, around the background's strongest one; >= 8")
       .field("interpolator_half_length_samples", &AlignmentConfig::interpolator_half_length_samples,
              "[sample] taps on each side");
   py::class_<Alignment>(m, "Alignment", "Delay of a scan against a reference.")

@@ -100,6 +100,7 @@ class SensorRadarNode {
   bool usable(Span<const float> scan) const;
   DirectPath find_direct_path(Span<const float> envelope) const;
   signal::Alignment align(Span<const float> envelope, const DirectPath& direct_path);
+  Range compared_range() const;
   void learn_reference(Span<const float> envelope, float shift_samples);
   void remove_clutter(Span<const float> scan, float shift_samples);
   Range usable_range(float shift_samples) const;
@@ -127,6 +128,7 @@ class SensorRadarNode {
   RangeClusterer range_clusterer_;
 
   int n_reference_ = 0;              ///< scans averaged into the reference envelope
+  Range compared_;                   ///< of the reference envelope, by the alignment
   int n_empty_room_ = 0;             ///< of which empty-room ones
   float last_shift_samples_ = 0.0f;  ///< [sample] of the last scan
   DirectPath background_direct_path_;

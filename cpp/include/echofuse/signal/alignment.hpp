@@ -21,7 +21,8 @@ enum class AlignmentMethod : std::uint8_t {
 
 struct AlignmentConfig {
   AlignmentMethod method = AlignmentMethod::kSubSample;
-  int max_shift_samples = 8;                 ///< [sample] searched on each side of the coarse shift
+  int max_shift_samples = 8;  ///< [sample] searched on each side of the coarse shift
+  int window_samples = 512;   ///< [sample] compared, around the background's strongest one; >= 8
   int interpolator_half_length_samples = 8;  ///< [sample] taps on each side of the fractional delay
 };
 

@@ -185,11 +185,11 @@ signal::Alignment SensorRadarNode::align(Span<const float> envelope, const Direc
   int coarse = last;
   if (direct_path.found && background_direct_path_.found)
     coarse = static_cast<int>(std::lround(direct_path.toa_samples - background_direct_path_.toa_samples));
-  (void)aligner_.estimate(envelope, reference, coarse, 0, config_.n_samples, alignment);
+  (void)aligner_.estimate(envelope, reference, coarse, compared_.first, compared_.last, alignment);
   if (std::abs(coarse - last) > config_.alignment.max_shift_samples) {
     ++counters_.alignment_doubts;
     if (alignment.correlation < kResembling)
-      (void)aligner_.estimate(envelope, reference, last, 0, config_.n_samples, alignment);
+      (void)aligner_.estimate(envelope, reference, last, compared_.first, compared_.last, alignment);
   }
   last_shift_samples_ = alignment.shift_samples;
   return alignment;
@@ -204,6 +204,17 @@ void SensorRadarNode::learn_reference(Span<const float> envelope, float shift_sa
   for (std::size_t k = 0; k < aligned.size(); ++k)
     reference_envelope_[k] += weight * (aligned[k] - reference_envelope_[k]);
   background_direct_path_ = find_direct_path(cut(reference_envelope_));
+  compared_ = compared_range();
+}
+
+/// A window that starts an eighth of itself before the strongest arrival, cut to the scan.
+SensorRadarNode::Range SensorRadarNode::compared_range() const {
+  const auto end = reference_envelope_.begin() + config_.n_samples;
+  const auto peak =
+      static_cast<int>(std::max_element(reference_envelope_.begin(), end) - reference_envelope_.begin());
+  const int length = std::min(config_.alignment.window_samples, config_.n_samples);
+  const int first = std::clamp(peak - length / 8, 0, config_.n_samples - length);
+  return {first, first + length};
 }
 
 /// Leaves the rectified residual in amplitude_, which holds the scan's envelope before.

@@ -8,23 +8,71 @@
 namespace echofuse::signal {
 namespace {
 
-constexpr int kShiftsAtOnce = 4;       ///< one load of the reference serves four shifts
+constexpr int kShiftsAtOnce = 4;  ///< one load of the reference serves four shifts
+constexpr int kOutputsAtOnce = 4;
 constexpr int kProductsPerBlock = 64;  ///< partial sums keep the rounding error of a float sum small
 
 constexpr float kLeastFraction = 1e-7f;  ///< [sample] less than float32 can tell from 0 beside 1
 
-/// Sums of products of one range of the reference with the envelope at `kShifts` neighbouring shifts.
-template <int kShifts>
-void add_products(const float* envelope, const float* reference, int count, float* sums) {
+/// Sum of products of one range of the reference with the envelope at one shift.
+float sum_of_products(const float* envelope, const float* reference, int count) {
+  float sum = 0.0f;
   for (int begin = 0; begin < count; begin += kProductsPerBlock) {
     const int end = std::min(count, begin + kProductsPerBlock);
-    float block[kShifts] = {};
-    for (int k = begin; k < end; ++k) {
-      const float value = reference[k];
-      for (int i = 0; i < kShifts; ++i) block[i] += value * envelope[k + i];
-    }
-    for (int i = 0; i < kShifts; ++i) sums[i] += block[i];
+    float block = 0.0f;
+    for (int k = begin; k < end; ++k) block += reference[k] * envelope[k];
+    sum += block;
   }
+  return sum;
+}
+
+/// The same at four neighbouring shifts, added to sums: every sample is loaded once for all of them.
+void add_products_at_4_shifts(const float* envelope, const float* reference, int count, float* sums) {
+  for (int begin = 0; begin < count; begin += kProductsPerBlock) {
+    const int end = std::min(count, begin + kProductsPerBlock);
+    float block_0 = 0.0f, block_1 = 0.0f, block_2 = 0.0f, block_3 = 0.0f;
+    const auto add = [&](float value, float at_0, float at_1, float at_2, float at_3) {
+      block_0 += value * at_0;
+      block_1 += value * at_1;
+      block_2 += value * at_2;
+      block_3 += value * at_3;
+    };
+    float a = envelope[begin];
+    float b = envelope[begin + 1];
+    float c = envelope[begin + 2];
+    int k = begin;
+    for (; k + 4 <= end; k += 4) {
+      const float d = envelope[k + 3];
+      add(reference[k], a, b, c, d);
+      a = envelope[k + 4];
+      add(reference[k + 1], b, c, d, a);
+      b = envelope[k + 5];
+      add(reference[k + 2], c, d, a, b);
+      c = envelope[k + 6];
+      add(reference[k + 3], d, a, b, c);
+    }
+    for (; k < end; ++k) add(reference[k], envelope[k], envelope[k + 1], envelope[k + 2], envelope[k + 3]);
+    sums[0] += block_0;
+    sums[1] += block_1;
+    sums[2] += block_2;
+    sums[3] += block_3;
+  }
+}
+
+/// Four neighbouring outputs of a filter: every tap is loaded once for all of them.
+void filter_4(const float* input, const float* taps, int n_taps, float* output) {
+  float sum_0 = 0.0f, sum_1 = 0.0f, sum_2 = 0.0f, sum_3 = 0.0f;
+  for (int i = 0; i < n_taps; ++i) {
+    const float tap = taps[i];
+    sum_0 += tap * input[i];
+    sum_1 += tap * input[i + 1];
+    sum_2 += tap * input[i + 2];
+    sum_3 += tap * input[i + 3];
+  }
+  output[0] = sum_0;
+  output[1] = sum_1;
+  output[2] = sum_2;
+  output[3] = sum_3;
 }
 
 /// The reference's samples [first, last) whose partner at `shift` lies inside the envelope.
@@ -39,8 +87,8 @@ Range inside(Range range, int shift, int n_samples) {
 /// The products of the reference's samples [range) with the envelope `shift` later, added to sum.
 void add_range(Span<const float> envelope, Span<const float> reference, Range range, int shift, float* sum) {
   if (range.first >= range.last) return;
-  add_products<1>(envelope.data() + (range.first + shift), reference.data() + range.first,
-                  range.last - range.first, sum);
+  *sum += sum_of_products(envelope.data() + (range.first + shift), reference.data() + range.first,
+                          range.last - range.first);
 }
 
 float energy(Span<const float> values, Range range) {
@@ -61,8 +109,8 @@ void correlate(Span<const float> envelope, Span<const float> reference, Range ra
     const Range common{inside(range, shift, n_samples).first,
                        inside(range, shift + kShiftsAtOnce - 1, n_samples).last};
     if (common.first >= common.last) break;
-    add_products<kShiftsAtOnce>(envelope.data() + (common.first + shift), reference.data() + common.first,
-                                common.last - common.first, products + i);
+    add_products_at_4_shifts(envelope.data() + (common.first + shift), reference.data() + common.first,
+                             common.last - common.first, products + i);
     for (int j = 0; j < kShiftsAtOnce; ++j) {
       const Range own = inside(range, shift + j, n_samples);
       add_range(envelope, reference, {own.first, common.first}, shift + j, products + i + j);
@@ -110,6 +158,7 @@ const char* invalid_field(const AlignmentConfig& config) {
     return "method";
   if (config.max_shift_samples < 1 || config.max_shift_samples > static_cast<int>(kMaxAlignmentShift))
     return "max_shift_samples";
+  if (config.window_samples < 8) return "window_samples";
   if (config.interpolator_half_length_samples < 2 ||
       config.interpolator_half_length_samples > static_cast<int>(kMaxInterpolatorHalfLength))
     return "interpolator_half_length_samples";
@@ -194,11 +243,16 @@ Status Aligner::shift(Span<const float> input, float shift_samples, Span<float> 
     offset = whole - config_.interpolator_half_length_samples + 1;
   }
   for (int k = 0; k < n_samples; ++k) {
-    const int begin = std::max(0, -(k + offset));
-    const int end = std::min(n_taps, n_samples - (k + offset));
+    const int source = k + offset;
+    if (source >= 0 && source + n_taps + kOutputsAtOnce <= n_samples + 1 && k + kOutputsAtOnce <= n_samples) {
+      filter_4(input.data() + source, taps.data(), n_taps, output.data() + k);
+      k += kOutputsAtOnce - 1;
+      continue;
+    }
+    const int end = std::min(n_taps, n_samples - source);
     float sum = 0.0f;
-    for (int i = begin; i < end; ++i)
-      sum += taps[static_cast<std::size_t>(i)] * input[static_cast<std::size_t>(k + offset + i)];
+    for (int i = std::max(0, -source); i < end; ++i)
+      sum += taps[static_cast<std::size_t>(i)] * input[static_cast<std::size_t>(source + i)];
     output[static_cast<std::size_t>(k)] = sum;
   }
   return Status::kOk;

@@ -8,6 +8,8 @@
 namespace echofuse::signal {
 namespace {
 
+constexpr int kOutputsAtOnce = 4;
+
 bool is_half_length(int value) { return value >= 1 && value <= static_cast<int>(kMaxFilterHalfLength); }
 
 /// Hann window, 1 at offset 0 and 0 at half_length + 1.
@@ -75,19 +77,39 @@ Status Envelope::process(Span<const float> scan, Span<float> envelope) const {
 
 void Envelope::hilbert(Span<const float> scan, Span<float> envelope) const {
   const int n_samples = static_cast<int>(scan.size());
-  for (int k = 0; k < n_samples; ++k) {
-    const float* centre = scan.data() + k;
-    float quadrature = 0.0f;
-    if (k >= half_length_ && k < n_samples - half_length_) {
-      for (int i = 0; i < n_taps_; ++i)
-        quadrature += taps_[static_cast<std::size_t>(i)] * (centre[-(2 * i + 1)] - centre[2 * i + 1]);
-    } else {
-      for (int i = 0; i < n_taps_; ++i)
-        quadrature += taps_[static_cast<std::size_t>(i)] *
-                      (at_or_zero(scan, k - (2 * i + 1)) - at_or_zero(scan, k + 2 * i + 1));
+  int k = 0;
+  while (k < n_samples) {
+    if (k >= half_length_ && k + kOutputsAtOnce <= n_samples - half_length_) {
+      hilbert_4(scan.data() + k, envelope.data() + k);
+      k += kOutputsAtOnce;
+      continue;
     }
-    envelope[static_cast<std::size_t>(k)] = std::sqrt(square(*centre) + square(quadrature));
+    float quadrature = 0.0f;
+    for (int i = 0; i < n_taps_; ++i)
+      quadrature += taps_[static_cast<std::size_t>(i)] *
+                    (at_or_zero(scan, k - (2 * i + 1)) - at_or_zero(scan, k + 2 * i + 1));
+    envelope[static_cast<std::size_t>(k)] =
+        std::sqrt(square(scan[static_cast<std::size_t>(k)]) + square(quadrature));
+    ++k;
   }
+}
+
+/// Four neighbouring samples, all taps inside the scan: every tap is loaded once for all of them.
+void Envelope::hilbert_4(const float* scan, float* envelope) const {
+  float sum_0 = 0.0f, sum_1 = 0.0f, sum_2 = 0.0f, sum_3 = 0.0f;
+  const float* before = scan - 1;
+  const float* after = scan + 1;
+  for (int i = 0; i < n_taps_; ++i, before -= 2, after += 2) {
+    const float tap = taps_[static_cast<std::size_t>(i)];
+    sum_0 += tap * (before[0] - after[0]);
+    sum_1 += tap * (before[1] - after[1]);
+    sum_2 += tap * (before[2] - after[2]);
+    sum_3 += tap * (before[3] - after[3]);
+  }
+  envelope[0] = std::sqrt(square(scan[0]) + square(sum_0));
+  envelope[1] = std::sqrt(square(scan[1]) + square(sum_1));
+  envelope[2] = std::sqrt(square(scan[2]) + square(sum_2));
+  envelope[3] = std::sqrt(square(scan[3]) + square(sum_3));
 }
 
 void Envelope::square_low_pass(Span<const float> scan, Span<float> envelope) const {

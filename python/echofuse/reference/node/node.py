@@ -162,14 +162,18 @@ class SensorRadarNode:
         if not self._reference:
             return NO_SHIFT
         config = self._config.alignment
-        last = int(np.floor(self._last_shift + 0.5))
-        coarse = last
+        previous = int(np.floor(self._last_shift + 0.5))
+        coarse = previous
         if path.found and self._background.found:
             coarse = int(np.floor(path.toa_samples - self._background.toa_samples + 0.5))
         reference = np.mean(self._reference, axis=0)
-        alignment = estimate_shift(amplitude, reference, coarse, 0, len(amplitude), config)
-        if abs(coarse - last) > config.max_shift_samples and alignment.correlation < RESEMBLING:
-            alignment = estimate_shift(amplitude, reference, last, 0, len(amplitude), config)
+        # compared: a window that starts an eighth of itself before the strongest arrival, cut to the scan
+        length = min(config.window_samples, len(reference))
+        first = max(0, min(int(np.argmax(reference)) - length // 8, len(reference) - length))
+        last = first + length
+        alignment = estimate_shift(amplitude, reference, coarse, first, last, config)
+        if abs(coarse - previous) > config.max_shift_samples and alignment.correlation < RESEMBLING:
+            alignment = estimate_shift(amplitude, reference, previous, first, last, config)
         self._last_shift = alignment.shift_samples
         return alignment
 

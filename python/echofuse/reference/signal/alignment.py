@@ -11,6 +11,7 @@ Samples = NDArray[np.float64]
 class AlignmentConfig(Protocol):
     method: str  # "sub_sample", "integer" or "none"
     max_shift_samples: int
+    window_samples: int
     interpolator_half_length_samples: int
 
 

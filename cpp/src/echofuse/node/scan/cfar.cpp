@@ -217,32 +217,36 @@ void CfarDetector::double_threshold_buffer(Span<const float> amplitude, Span<flo
 /// Algorithm 1 in one direction; the first buffer_samples are not tested. threshold: lowered, never raised.
 void CfarDetector::buffer_pass(const float* amplitude, float* threshold, int step, int n_samples,
                                float global_power) const {
+  // Copies, which no store through `threshold` can change: they stay in registers.
+  const float local_factor = config_.local_factor;
+  const float global_level = config_.global_factor * global_power;
   const float rise = config_.rise_threshold_factor * global_power;
+  const float fall = 0.5f * rise;
   const float per_cell = 1.0f / static_cast<float>(config_.buffer_samples);
+  const int max_rises = config_.max_rises;
   SlidingSum<kMaxCfarBuffer> buffer(static_cast<std::size_t>(config_.buffer_samples));
   float previous = 0.0f;
-  for (int k = 0; k < config_.buffer_samples; ++k) {
-    previous = amplitude[k * step] * amplitude[k * step];
+  int k = 0;
+  for (; k < config_.buffer_samples; ++k, amplitude += step, threshold += step) {
+    previous = *amplitude * *amplitude;
     buffer.push(previous);
   }
   bool frozen = false;
   float frozen_power = 0.0f;
   float local_power = buffer.value() * per_cell;
   int rises = 0;
-  for (int k = config_.buffer_samples; k < n_samples; ++k) {
-    const float power = amplitude[k * step] * amplitude[k * step];
-    const float level =
-        config_.local_factor * (frozen ? frozen_power : local_power) + config_.global_factor * global_power;
-    float& lowest = threshold[k * step];
-    lowest = std::min(lowest, level);
+  for (; k < n_samples; ++k, amplitude += step, threshold += step) {
+    const float power = *amplitude * *amplitude;
+    const float level = local_factor * (frozen ? frozen_power : local_power) + global_level;
+    if (level < *threshold) *threshold = level;
     if (!(power > level)) {
       buffer.push(power);
       local_power = buffer.value() * per_cell;
       if (power > previous + rise)
         ++rises;
-      else if (power < previous - 0.5f * rise)
+      else if (power < previous - fall)
         rises = 0;
-      if (rises > config_.max_rises && !frozen) {
+      if (rises > max_rises && !frozen) {
         frozen = true;
         frozen_power = local_power;
       } else if (frozen && local_power < frozen_power) {
