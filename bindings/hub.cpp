@@ -27,7 +27,8 @@ void bind_site(py::module_& m) {
       .field("min_y_m", &Area::min_y_m, "[m]")
       .field("max_x_m", &Area::max_x_m, "[m]")
       .field("max_y_m", &Area::max_y_m, "[m]");
-  ConfigBinder<NodeSite>(m, "NodeSite", "The foci of one node's ellipses; monostatic when both are in one place.")
+  ConfigBinder<NodeSite>(m, "NodeSite",
+                         "The foci of one node's ellipses; monostatic when both are in one place.")
       .field("node_id", &NodeSite::node_id)
       .field("tx", &NodeSite::tx, "[m]")
       .field("rx", &NodeSite::rx, "[m]");
@@ -38,7 +39,8 @@ void bind_site(py::module_& m) {
         if (what == nullptr) return py::none();
         return py::str(what);
       },
-      py::arg("nodes"), py::arg("area"), "\"n_nodes\", \"nodes\" or \"area\": what makes locating impossible; or None.");
+      py::arg("nodes"), py::arg("area"),
+      "\"n_nodes\", \"nodes\" or \"area\": what makes locating impossible; or None.");
   m.def(
       "path_length",
       [](const Point& position, const Point& tx, const Point& rx, float body_radius_m) {
@@ -65,13 +67,15 @@ void bind_ellipse(py::module_& m) {
       .field("body_radius_m", &EllipseConfig::body_radius_m, "[m]")
       .field("robust_scale_m", &EllipseConfig::robust_scale_m, "[m] 0: all paths alike");
   py::class_<EllipseFix>(m, "EllipseFix")
-      .def_property_readonly("position_m",
-                             [](const EllipseFix& fix) { return py::make_tuple(fix.position.x_m, fix.position.y_m); })
+      .def_property_readonly(
+          "position_m",
+          [](const EllipseFix& fix) { return py::make_tuple(fix.position.x_m, fix.position.y_m); })
       .def_readonly("range_residual_m", &EllipseFix::range_residual_m)
       .def_readonly("equation_residual_m3", &EllipseFix::equation_residual_m3)
       .def_readonly("iterations", &EllipseFix::iterations)
       .def_readonly("converged", &EllipseFix::converged);
-  const auto ellipses_of = [](const std::vector<NodeSite>& nodes, const FloatArray& path, const FloatArray& weight) {
+  const auto ellipses_of = [](const std::vector<NodeSite>& nodes, const FloatArray& path,
+                              const FloatArray& weight) {
     const auto paths = as_span(path, "path_m");
     const auto weights = as_span(weight, "weight");
     if (paths.size() != nodes.size() || weights.size() != nodes.size())
@@ -86,8 +90,8 @@ void bind_ellipse(py::module_& m) {
       .def("configure", &EllipseLeastSquares::configure, py::arg("config"))
       .def(
           "process",
-          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes, const FloatArray& path,
-                        const FloatArray& weight, const Area& area) {
+          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes,
+                        const FloatArray& path, const FloatArray& weight, const Area& area) {
             const std::vector<RangeEllipse> ellipses = ellipses_of(nodes, path, weight);
             EllipseFix fix;
             const Status status = self.process({ellipses.data(), ellipses.size()}, area, fix);
@@ -97,8 +101,9 @@ void bind_ellipse(py::module_& m) {
           "(status, EllipseFix) from one path a node.")
       .def(
           "refine",
-          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes, const FloatArray& path,
-                        const FloatArray& weight, const Point& position, bool robust) {
+          [ellipses_of](const EllipseLeastSquares& self, const std::vector<NodeSite>& nodes,
+                        const FloatArray& path, const FloatArray& weight, const Point& position,
+                        bool robust) {
             const std::vector<RangeEllipse> ellipses = ellipses_of(nodes, path, weight);
             EllipseFix fix;
             fix.position = position;
@@ -145,7 +150,8 @@ void bind_coverage(py::module_& m) {
       .def(py::init<>())
       .def(
           "configure",
-          [](Coverage& self, const CoverageConfig& config, const std::vector<NodeSite>& nodes, const Area& area) {
+          [](Coverage& self, const CoverageConfig& config, const std::vector<NodeSite>& nodes,
+             const Area& area) {
             return self.configure(config, {nodes.data(), nodes.size()}, area);
           },
           py::arg("config"), py::arg("nodes"), py::arg("area"))
@@ -162,7 +168,8 @@ void bind_coverage(py::module_& m) {
             }
             return py::make_tuple(worst, to_array(Span<const CoveragePoint>(results.data(), results.size())));
           },
-          py::arg("positions_m").noconvert(), "(status, structured array of CoveragePoint) of places (n, 2).");
+          py::arg("positions_m").noconvert(),
+          "(status, structured array of CoveragePoint) of places (n, 2).");
 }
 
 void bind_frame_assembler(py::module_& m) {
@@ -218,7 +225,8 @@ void bind_frame_assembler(py::module_& m) {
             return py::make_tuple(status, py::make_tuple(frame.time_us, frame.frame, frame.n_reported,
                                                          to_array(frame.detections)));
           },
-          py::arg("now_us"), "(status, None or (time_us, frame, n_reported, structured array of FrameDetection)).");
+          py::arg("now_us"),
+          "(status, None or (time_us, frame, n_reported, structured array of FrameDetection)).");
 }
 
 void bind_selection(py::module_& m) {
@@ -277,7 +285,8 @@ void bind_selection(py::module_& m) {
             if (paths.size() != nodes.size() || weights.size() != nodes.size())
               throw py::value_error("node_index, path_m and weight must have the same length");
             std::vector<hub::FrameDetection> detections;
-            for (std::size_t i = 0; i < nodes.size(); ++i) detections.push_back({nodes[i], paths[i], weights[i]});
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+              detections.push_back({nodes[i], paths[i], weights[i]});
             const auto rows = as_span_of_rows(predictions, 2, "predictions_m");
             std::vector<Point> points;
             for (std::size_t i = 0; i < rows.size(); i += 2) points.push_back({rows[i], rows[i + 1]});
@@ -312,7 +321,8 @@ void bind_point_clusters(py::module_& m) {
           [](PointClusters& self, const FloatArray& position, const FloatArray& weight) {
             const auto rows = as_span_of_rows(position, 2, "position_m");
             const auto weights = as_span(weight, "weight");
-            if (rows.size() != 2 * weights.size()) throw py::value_error("position_m must have one row a weight");
+            if (rows.size() != 2 * weights.size())
+              throw py::value_error("position_m must have one row a weight");
             std::vector<hub::Measurement> points;
             for (std::size_t i = 0; i < weights.size(); ++i)
               points.push_back({rows[2 * i], rows[2 * i + 1], weights[i], 0.0f, 0});

@@ -14,7 +14,8 @@ inline void fill_detections(link::Detections& report, const FloatArray& delay, c
   if (delays.size() != weights.size()) throw py::value_error("delay_s and weight must have the same length");
   for (std::size_t i = 0; i < delays.size(); ++i)
     if (!report.detections.try_push_back({delays[i], weights[i]}))
-      throw py::value_error("a report carries at most " + std::to_string(kMaxDetectionsPerNode) + " detections");
+      throw py::value_error("a report carries at most " + std::to_string(kMaxDetectionsPerNode) +
+                            " detections");
 }
 
 }  // namespace echofuse::bindings

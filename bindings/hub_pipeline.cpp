@@ -15,9 +15,10 @@ struct TapLayout {
   std::size_t columns;
 };
 constexpr TapLayout kTapLayouts[] = {
-    {TapId::kFrame, "frame", 3},         {TapId::kSelected, "selected", 5}, {TapId::kPoints, "points", 4},
-    {TapId::kPredicted, "predicted", 5}, {TapId::kUpdated, "updated", 5},   {TapId::kResampled, "resampled", 5},
-    {TapId::kPeaks, "peaks", 5},         {TapId::kTracks, "tracks", 7},
+    {TapId::kFrame, "frame", 3},     {TapId::kSelected, "selected", 5},
+    {TapId::kPoints, "points", 4},   {TapId::kPredicted, "predicted", 5},
+    {TapId::kUpdated, "updated", 5}, {TapId::kResampled, "resampled", 5},
+    {TapId::kPeaks, "peaks", 5},     {TapId::kTracks, "tracks", 7},
 };
 
 /// Copies the taps of one call into a dictionary, each as (n, columns).
@@ -85,7 +86,9 @@ void set_nodes(SensorRadarHubConfig& config, const std::vector<std::int32_t>& id
 }
 
 void bind_config(py::module_& m) {
-  py::enum_<hub::Tracker>(m, "Tracker").value("phd", hub::Tracker::kPhd).value("kalman", hub::Tracker::kKalman);
+  py::enum_<hub::Tracker>(m, "Tracker")
+      .value("phd", hub::Tracker::kPhd)
+      .value("kalman", hub::Tracker::kKalman);
   ConfigBinder<SensorRadarHubConfig>(m, "SensorRadarHubConfig", "The hub of the pipeline sensor_radar.")
       .field("nodes", &SensorRadarHubConfig::nodes, "the first n_nodes")
       .field("n_nodes", &SensorRadarHubConfig::n_nodes, "at least 3")
@@ -102,8 +105,8 @@ void bind_config(py::module_& m) {
       .field("em", &SensorRadarHubConfig::em)
       .field("tracks", &SensorRadarHubConfig::tracks)
       .type()
-      .def("set_nodes", &set_nodes, py::arg("node_ids"), py::arg("tx_m").noconvert(), py::arg("rx_m").noconvert(),
-           "Sets nodes and n_nodes from positions (n, 2) [m].")
+      .def("set_nodes", &set_nodes, py::arg("node_ids"), py::arg("tx_m").noconvert(),
+           py::arg("rx_m").noconvert(), "Sets nodes and n_nodes from positions (n, 2) [m].")
       .def(
           "set_area",
           [](SensorRadarHubConfig& config, float min_x_m, float min_y_m, float max_x_m, float max_y_m) {
@@ -134,7 +137,8 @@ void bind_hub_pipeline(py::module_& m) {
           py::arg("node_id"), py::arg("frame"), py::arg("delay_s").noconvert(), py::arg("weight").noconvert(),
           py::arg("now_us"), "One node's report; frame counts the node's scans.")
       .def("poll", &poll, py::arg("now_us"),
-           "(status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of Track.")
+           "(status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of "
+           "Track.")
       .def(
           "poll_with_taps",
           [](SensorRadarHub& self, std::int64_t now_us) {

@@ -12,7 +12,8 @@ using namespace echofuse;
 using namespace echofuse::hub;
 
 constexpr Area kRoom{0.0f, 0.0f, 11.5f, 6.0f};
-const std::array<Point, 6> kReceivers{{{0.0f, 1.5f}, {0.0f, 4.5f}, {3.5f, 6.0f}, {8.0f, 6.0f}, {11.5f, 4.5f}, {11.5f, 1.5f}}};
+const std::array<Point, 6> kReceivers{
+    {{0.0f, 1.5f}, {0.0f, 4.5f}, {3.5f, 6.0f}, {8.0f, 6.0f}, {11.5f, 4.5f}, {11.5f, 1.5f}}};
 constexpr Point kTransmitter{5.75f, 0.0f};
 
 std::array<RangeEllipse, 6> ellipses_around(const Point& person, float body_radius_m = 0.0f) {

@@ -116,8 +116,7 @@ TEST_CASE("An impossible site is refused by name") {
   twins.nodes[1].node_id = twins.nodes[0].node_id;
   CHECK(refused(twins) == "nodes");
   SensorRadarHubConfig line = room();
-  for (std::size_t i = 0; i < 4; ++i)
-    line.nodes[i].tx = line.nodes[i].rx = {static_cast<float>(i), 2.0f};
+  for (std::size_t i = 0; i < 4; ++i) line.nodes[i].tx = line.nodes[i].rx = {static_cast<float>(i), 2.0f};
   CHECK(refused(line) == "nodes");
   line.area = {0.0f, 2.0f, 4.0f, 4.0f};  // beside the line: the mirror image is outside
   CHECK(hub->configure(line) == Status::kOk);

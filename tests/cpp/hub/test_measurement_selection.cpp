@@ -87,7 +87,8 @@ TEST_CASE("Sixteen detections on each of sixteen nodes: bounded, and what is cut
   std::vector<FrameDetection> detections;
   for (int node = 0; node < 16; ++node)
     for (int d = 0; d < 16; ++d)
-      detections.push_back({node, 12.0f + 0.3f * static_cast<float>(d), 4.0f + static_cast<float>((d * 7) % 16)});
+      detections.push_back(
+          {node, 12.0f + 0.3f * static_cast<float>(d), 4.0f + static_cast<float>((d * 7) % 16)});
   for (const int nu : {3, 8, 16}) {  // of nu = 16 a depth of two would make 65,536: one tuple remains
     SelectionConfig config;
     config.nodes_per_tuple = nu;
@@ -109,9 +110,13 @@ TEST_CASE("What is not a frame is refused and changes nothing") {
   CHECK(stage.process({}, 6, {}, measurements) == Status::kNotConfigured);
   REQUIRE(stage.configure(SelectionConfig{}, EllipseConfig{}, view(nodes), kRoom) == Status::kOk);
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<std::vector<FrameDetection>> bad{
-      {{6, 10.0f, 5.0f}}, {{-1, 10.0f, 5.0f}}, {{1, 10.0f, 5.0f}, {0, 10.0f, 5.0f}}, {{0, nan, 5.0f}},
-      {{0, 11.0f, 5.0f}, {0, 10.0f, 5.0f}}, {{0, 10.0f, nan}}, {{0, 10.0f, -1.0f}}};
+  const std::vector<std::vector<FrameDetection>> bad{{{6, 10.0f, 5.0f}},
+                                                     {{-1, 10.0f, 5.0f}},
+                                                     {{1, 10.0f, 5.0f}, {0, 10.0f, 5.0f}},
+                                                     {{0, nan, 5.0f}},
+                                                     {{0, 11.0f, 5.0f}, {0, 10.0f, 5.0f}},
+                                                     {{0, 10.0f, nan}},
+                                                     {{0, 10.0f, -1.0f}}};
   for (const std::vector<FrameDetection>& frame : bad)
     CHECK(stage.process(view(frame), 6, {}, measurements) == Status::kInvalidInput);
   CHECK(stage.counters().frames == 0);
@@ -128,7 +133,8 @@ TEST_CASE("A failed configure leaves the earlier configuration in force") {
   std::vector<NodeSite> mixed = nodes;
   mixed[2].tx = mixed[2].rx;
   CHECK(stage.configure(paper, EllipseConfig{}, view(mixed), kRoom) == Status::kInvalidConfig);
-  CHECK(stage.configure(SelectionConfig{}, EllipseConfig{}, view(nodes).first(2), kRoom) == Status::kInvalidConfig);
+  CHECK(stage.configure(SelectionConfig{}, EllipseConfig{}, view(nodes).first(2), kRoom) ==
+        Status::kInvalidConfig);
   BoundedVector<Measurement, kMaxMeasurementsPerFrame> measurements;
   CHECK(stage.process(view(frame_of(nodes, {{4.0f, 3.0f}})), 6, {}, measurements) == Status::kOk);
   CHECK(measurements.size() == 1);

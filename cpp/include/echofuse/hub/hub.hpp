@@ -30,8 +30,8 @@ struct SensorRadarHubConfig {
   std::array<NodeSite, kMaxNodes> nodes{};  ///< the first n_nodes
   int n_nodes = 0;                          ///< in [3, kMaxNodes]
   Area area;                                ///< where people are looked for
-  float frame_period_s = 0.1f;    ///< [s] taken for the first frame, and when the clock stands still, > 0
-  int aid_missed_frames = 3;      ///< tracks silent for more frames do not help the selection, >= 0
+  float frame_period_s = 0.1f;  ///< [s] taken for the first frame, and when the clock stands still, > 0
+  int aid_missed_frames = 3;    ///< tracks silent for more frames do not help the selection, >= 0
   Tracker tracker = Tracker::kPhd;
   FrameAssemblerConfig frame_assembler;
   EllipseConfig ellipse;

@@ -11,33 +11,33 @@
 namespace echofuse::hub {
 
 struct CoverageConfig {
-  float transmit_power_dbm = -12.64f;     ///< [dBm] mean over the inter-pulse period
-  float noise_figure_db = 4.8f;           ///< [dB] >= 0
-  float antenna_gain_db = 0.0f;           ///< [dB] of each antenna
-  float centre_hz = 4.3e9f;               ///< [Hz] > bandwidth / 2
-  float bandwidth_hz = 2.2e9f;            ///< [Hz] > 0
-  float pulse_interval_s = 117.12e-9f;    ///< [s] > 0
-  int pulses_per_scan = 20480;            ///< N_s, integrated coherently, >= 1
-  float radar_cross_section_m2 = 1.0f;    ///< [m^2] of a person, > 0
-  float noise_temperature_K = 290.0f;     ///< [K] > 0
-  float path_loss_exponent = 2.0f;        ///< [1] rho of (9), 2 in free space, > 0
-  float frequency_exponent = 0.0f;        ///< [1] kappa of (9), 0 in free space, >= 0
-  float excess_path_loss_1m_db = 0.0f;    ///< [dB] PL_0 over free space's at 1 m, each leg
-  float min_snr_db = 20.0f;               ///< [dB] SNR_min: what detection needs
-  float blind_zone_s = 1.5e-9f;           ///< [s] after the direct path, not searched, >= 0
-  float path_sigma_m = 0.05f;             ///< [m] standard deviation of one measured path, > 0
-  float body_radius_m = 0.0f;             ///< [m] as in EllipseConfig, in [0, 1]
+  float transmit_power_dbm = -12.64f;   ///< [dBm] mean over the inter-pulse period
+  float noise_figure_db = 4.8f;         ///< [dB] >= 0
+  float antenna_gain_db = 0.0f;         ///< [dB] of each antenna
+  float centre_hz = 4.3e9f;             ///< [Hz] > bandwidth / 2
+  float bandwidth_hz = 2.2e9f;          ///< [Hz] > 0
+  float pulse_interval_s = 117.12e-9f;  ///< [s] > 0
+  int pulses_per_scan = 20480;          ///< N_s, integrated coherently, >= 1
+  float radar_cross_section_m2 = 1.0f;  ///< [m^2] of a person, > 0
+  float noise_temperature_K = 290.0f;   ///< [K] > 0
+  float path_loss_exponent = 2.0f;      ///< [1] rho of (9), 2 in free space, > 0
+  float frequency_exponent = 0.0f;      ///< [1] kappa of (9), 0 in free space, >= 0
+  float excess_path_loss_1m_db = 0.0f;  ///< [dB] PL_0 over free space's at 1 m, each leg
+  float min_snr_db = 20.0f;             ///< [dB] SNR_min: what detection needs
+  float blind_zone_s = 1.5e-9f;         ///< [s] after the direct path, not searched, >= 0
+  float path_sigma_m = 0.05f;           ///< [m] standard deviation of one measured path, > 0
+  float body_radius_m = 0.0f;           ///< [m] as in EllipseConfig, in [0, 1]
 };
 
 const char* invalid_field(const CoverageConfig& config);
 
 /// A place as the site sees it.
 struct CoveragePoint {
-  int n_covering = 0;                    ///< pairs with enough SNR that are not blind there
-  int n_blind = 0;                       ///< pairs in whose blind zone it lies
-  float best_snr_db = 0.0f;              ///< [dB] over all pairs
-  float third_snr_db = 0.0f;             ///< [dB] the third best: what a fix depends on
-  float position_error_bound_m = 0.0f;   ///< [m] Cramer-Rao, by the covering pairs; infinite if they cannot
+  int n_covering = 0;                   ///< pairs with enough SNR that are not blind there
+  int n_blind = 0;                      ///< pairs in whose blind zone it lies
+  float best_snr_db = 0.0f;             ///< [dB] over all pairs
+  float third_snr_db = 0.0f;            ///< [dB] the third best: what a fix depends on
+  float position_error_bound_m = 0.0f;  ///< [m] Cramer-Rao, by the covering pairs; infinite if they cannot
 };
 
 /// [1] (5): sqrt(l_t l_r) / (l / 2). Under 1 two loops, 1 a lemniscate, over 1 one loop.

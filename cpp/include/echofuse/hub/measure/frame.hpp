@@ -18,9 +18,9 @@ struct FrameDetection {
 
 /// What all nodes said about one instant.
 struct Frame {
-  std::int64_t time_us = 0;     ///< [us] when its first report came, the hub's clock
-  std::uint32_t frame = 0;      ///< counts the hub's frames
-  int n_reported = 0;           ///< nodes that reported, with or without detections
+  std::int64_t time_us = 0;  ///< [us] when its first report came, the hub's clock
+  std::uint32_t frame = 0;   ///< counts the hub's frames
+  int n_reported = 0;        ///< nodes that reported, with or without detections
   BoundedVector<FrameDetection, kMaxFrameDetections> detections;  ///< ascending node, then path
 };
 

@@ -91,8 +91,8 @@ class FrameAssembler {
   std::array<NodeState, kMaxNodes> nodes_;
   std::size_t n_nodes_ = 0;
   std::array<OpenFrame, kOpenFrames> slots_;
-  std::size_t head_ = 0;         ///< index of the oldest frame's slot
-  std::uint32_t number_ = 0;     ///< of the oldest frame
+  std::size_t head_ = 0;      ///< index of the oldest frame's slot
+  std::uint32_t number_ = 0;  ///< of the oldest frame
   FrameAssemblerCounters counters_;
 };
 

@@ -27,10 +27,10 @@ enum class SelectionResidual : std::uint8_t {
 struct SelectionConfig {
   SelectionMethod method = SelectionMethod::kConsensus;
   SelectionResidual residual = SelectionResidual::kRangeResidual;
-  int nodes_per_tuple = 3;                   ///< nu, in [3, n_nodes]
-  float min_weight = 0.0f;                   ///< [1] least sum of the detections' weights (the paper: 40)
-  float max_range_residual_m = 0.25f;        ///< [m] RR of a tuple or of a supported position, > 0
-  float max_equation_residual_m3 = 6e-13f;   ///< [m^3] RE of a tuple, >= 0 (the paper, in float64)
+  int nodes_per_tuple = 3;                  ///< nu, in [3, n_nodes]
+  float min_weight = 0.0f;                  ///< [1] least sum of the detections' weights (the paper: 40)
+  float max_range_residual_m = 0.25f;       ///< [m] RR of a tuple or of a supported position, > 0
+  float max_equation_residual_m3 = 6e-13f;  ///< [m^3] RE of a tuple, >= 0 (the paper, in float64)
   // kConsensus only
   float coarse_residual_m = 1.0f;     ///< [m] RR of (23), above which a tuple is not refined, > 0
   float support_gate_m = 0.3f;        ///< [m] a node supports a position by a path this near, > 0
@@ -100,8 +100,8 @@ class MeasurementSelection {
     Point position;
     float residual_m;
     float weight;
-    std::uint8_t support;  ///< nodes
-    std::uint8_t own;      ///< of them, whose detection is not taken yet
+    std::uint8_t support;                        ///< nodes
+    std::uint8_t own;                            ///< of them, whose detection is not taken yet
     std::array<std::uint8_t, kMaxNodes> chosen;  ///< each node's detection within the node, or kNoDetection
   };
   /// A nu-tuple: parallel nodes and their detections within the node.

@@ -53,8 +53,8 @@ class PointClusters {
 
  private:
   struct Cluster {
-    float x_m, y_m;            ///< centroid
-    float sum_x_m, sum_y_m;    ///< over members
+    float x_m, y_m;          ///< centroid
+    float sum_x_m, sum_y_m;  ///< over members
     float weight;
     std::uint16_t members;
     std::uint16_t first, last;  ///< member list

@@ -24,9 +24,10 @@ float distance(const Point& a, const Point& b) {
 /// (3) with the two legs' (c / (4 pi f))^2 replaced by 1 / PL of (9):
 /// chi = N_s E / N_0 G^2 (4 pi sigma / c^2) mean over the band of f^2 PL_0^-2 (f / f_c)^(-4 (kappa + 1)).
 float bistatic_constant_db(const CoverageConfig& c) {
-  const float energy_dbj = c.transmit_power_dbm - 30.0f + to_db(c.pulse_interval_s) +
-                           to_db(static_cast<float>(c.pulses_per_scan));
-  const float noise_dbj = to_db(kBoltzmann_J_per_K * 1e20f) - 200.0f + to_db(c.noise_temperature_K) + c.noise_figure_db;
+  const float energy_dbj =
+      c.transmit_power_dbm - 30.0f + to_db(c.pulse_interval_s) + to_db(static_cast<float>(c.pulses_per_scan));
+  const float noise_dbj =
+      to_db(kBoltzmann_J_per_K * 1e20f) - 200.0f + to_db(c.noise_temperature_K) + c.noise_figure_db;
   const float wavelength = kSpeedOfLight_mps / c.centre_hz;
   const float free_space_1m_db = 2.0f * to_db(4.0f * kPi / wavelength);
   const float target_db = to_db(4.0f * kPi * c.radar_cross_section_m2 / (wavelength * wavelength));

@@ -183,8 +183,7 @@ bool EllipseLeastSquares::best_sample(Span<const RangeEllipse> ellipses, const A
 
 Status EllipseLeastSquares::refine(Span<const RangeEllipse> ellipses, bool robust, EllipseFix& fix) const {
   if (!configured_) return Status::kNotConfigured;
-  const float per_scale =
-      robust && config_.robust_scale_m > 0.0f ? 1.0f / config_.robust_scale_m : 0.0f;
+  const float per_scale = robust && config_.robust_scale_m > 0.0f ? 1.0f / config_.robust_scale_m : 0.0f;
   fix.iterations = 0;
   fix.converged = false;
   while (fix.iterations < config_.max_iterations && !fix.converged) {
@@ -212,8 +211,7 @@ Status EllipseLeastSquares::refine(Span<const RangeEllipse> ellipses, bool robus
 float EllipseLeastSquares::range_residual(Span<const RangeEllipse> ellipses, const Point& position) const {
   float sum = 0.0f;
   for (const RangeEllipse& ellipse : ellipses) {
-    const float error =
-        ellipse.path_m - path_length(position, ellipse.tx, ellipse.rx, config_.body_radius_m);
+    const float error = ellipse.path_m - path_length(position, ellipse.tx, ellipse.rx, config_.body_radius_m);
     sum += error * error;
   }
   return std::sqrt(sum / static_cast<float>(ellipses.size()));

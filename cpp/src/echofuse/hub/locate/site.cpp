@@ -9,8 +9,8 @@
 namespace echofuse::hub {
 namespace {
 
-constexpr float kSamePlace_m = 0.01f;   ///< antennas nearer than a centimetre are in one place
-constexpr float kMinBisector = 1e-3f;   ///< |u + v| below which a person stands on the baseline
+constexpr float kSamePlace_m = 0.01f;  ///< antennas nearer than a centimetre are in one place
+constexpr float kMinBisector = 1e-3f;  ///< |u + v| below which a person stands on the baseline
 
 float distance(const Point& a, const Point& b) {
   const float x = a.x_m - b.x_m;

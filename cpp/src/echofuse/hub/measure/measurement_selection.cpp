@@ -13,7 +13,9 @@ constexpr std::uint64_t kManyTuples = std::uint64_t{1} << 40;  ///< counts satur
 constexpr std::uint64_t kDepthSlack = 8;  ///< this many times too many tuples: detections are cut first
 
 bool bit(std::uint16_t set, int index) { return ((set >> index) & 1) != 0; }
-std::uint16_t with_bit(std::uint16_t set, int index) { return static_cast<std::uint16_t>(set | (1u << index)); }
+std::uint16_t with_bit(std::uint16_t set, int index) {
+  return static_cast<std::uint16_t>(set | (1u << index));
+}
 
 int count_bits(std::uint16_t set) {
   int n = 0;
@@ -87,14 +89,16 @@ Status MeasurementSelection::configure(const SelectionConfig& config, const Elli
 void MeasurementSelection::reset() { counters_ = SelectionCounters{}; }
 
 Status MeasurementSelection::process(Span<const FrameDetection> detections, int n_reported,
-                                     Span<const Point> predictions, BoundedVector<Measurement>& measurements) {
+                                     Span<const Point> predictions,
+                                     BoundedVector<Measurement>& measurements) {
   measurements.clear();
   if (n_nodes_ == 0) return Status::kNotConfigured;
   if (!index_frame(detections)) return Status::kInvalidInput;
   ++counters_.frames;
   cut_ = false;
   const float part = config_.min_support_fraction * static_cast<float>(n_reported);
-  needed_ = {std::max(config_.min_support, static_cast<int>(std::ceil(part - 1e-4f))), config_.min_own_support};
+  needed_ = {std::max(config_.min_support, static_cast<int>(std::ceil(part - 1e-4f))),
+             config_.min_own_support};
 
   const bool consensus = config_.method == SelectionMethod::kConsensus;
   if (consensus && config_.track_aided) aid(predictions, measurements);
@@ -114,7 +118,8 @@ bool MeasurementSelection::index_frame(Span<const FrameDetection> detections) {
   int previous_node = 0;
   float previous_path = 0.0f;
   for (const FrameDetection& detection : detections) {
-    if (detection.node_index < previous_node || detection.node_index >= static_cast<int>(n_nodes_)) return false;
+    if (detection.node_index < previous_node || detection.node_index >= static_cast<int>(n_nodes_))
+      return false;
     if (detection.node_index > previous_node) previous_path = 0.0f;
     if (!(detection.path_m >= previous_path && std::isfinite(detection.path_m))) return false;
     if (!(detection.weight >= 0.0f && std::isfinite(detection.weight))) return false;
@@ -158,7 +163,8 @@ void MeasurementSelection::choose_depth() {
   }
   const std::uint64_t total = count_tuples(counts, deepest, config_.nodes_per_tuple);
   const std::uint64_t fitting = count_tuples(counts, depth, config_.nodes_per_tuple);
-  stride_ = static_cast<std::size_t>(std::max<std::uint64_t>(1, (fitting + kMaxTuplesPerFrame - 1) / kMaxTuplesPerFrame));
+  stride_ = static_cast<std::size_t>(
+      std::max<std::uint64_t>(1, (fitting + kMaxTuplesPerFrame - 1) / kMaxTuplesPerFrame));
   counters_.dropped_tuples += total;  // those that are visited are taken off again
   cut_ = cut_ || depth < deepest;
 }
@@ -326,7 +332,8 @@ bool MeasurementSelection::support(Candidate& candidate, float gate_m, const Nee
     }
     EllipseFix fix;
     fix.position = candidate.position;
-    if (ellipse_.refine({ellipses.data(), gather(supporters, ellipses)}, true, fix) != Status::kOk) return false;
+    if (ellipse_.refine({ellipses.data(), gather(supporters, ellipses)}, true, fix) != Status::kOk)
+      return false;
     candidate.position = fix.position;
     candidate.residual_m = fix.range_residual_m;
   }
@@ -384,7 +391,8 @@ void MeasurementSelection::mark_taken(const Candidate& winner) {
         path_length(winner.position, nodes_[node].tx, nodes_[node].rx, ellipse_.config().body_radius_m);
     for (int d = 0; d < first_[node + 1] - first_[node]; ++d) {
       const float behind = detections_[static_cast<std::size_t>(first_[node] + d)].path_m - path;
-      if (behind >= -config_.support_gate_m && behind <= config_.echo_tail_m) taken_[node] = with_bit(taken_[node], d);
+      if (behind >= -config_.support_gate_m && behind <= config_.echo_tail_m)
+        taken_[node] = with_bit(taken_[node], d);
     }
   }
 }

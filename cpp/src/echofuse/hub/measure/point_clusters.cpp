@@ -31,7 +31,8 @@ Status PointClusters::process(Span<const Measurement> measurements, BoundedVecto
   if (!configured_) return Status::kNotConfigured;
   if (measurements.size() > kMaxMeasurementsPerFrame) return Status::kInvalidInput;
   for (const Measurement& m : measurements)
-    if (!std::isfinite(m.x_m) || !std::isfinite(m.y_m) || !std::isfinite(m.weight)) return Status::kInvalidInput;
+    if (!std::isfinite(m.x_m) || !std::isfinite(m.y_m) || !std::isfinite(m.weight))
+      return Status::kInvalidInput;
 
   points_ = measurements;
   clusters_.clear();
