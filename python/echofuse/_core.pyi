@@ -42,6 +42,7 @@ __all__: list[str] = [
     "FrameAssemblerCounters",
     "KalmanTracker",
     "LIMITS",
+    "MEASUREMENT_STAGES_BYTES",
     "MeasurementSelection",
     "MixtureConfig",
     "MixtureFitter",
@@ -61,11 +62,14 @@ __all__: list[str] = [
     "RangeClusterConfig",
     "RangeClusterer",
     "ResamplingChance",
+    "SENSOR_RADAR_HUB_BYTES",
     "SENSOR_RADAR_NODE_BYTES",
     "SelectionConfig",
     "SelectionCounters",
     "SelectionMethod",
     "SelectionResidual",
+    "SensorRadarHub",
+    "SensorRadarHubConfig",
     "SensorRadarNode",
     "SensorRadarNodeConfig",
     "Status",
@@ -74,6 +78,7 @@ __all__: list[str] = [
     "TrackManagerConfig",
     "TrackState",
     "TrackUpdate",
+    "Tracker",
     "assign",
     "cassini_ratio",
     "gaussian_kernel",
@@ -208,12 +213,12 @@ class EnvelopeConfig:
         """
     def __copy__(self) -> EnvelopeConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> EnvelopeConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
         method: EnvelopeMethod = ...,
-        hilbert_half_length_samples: int = 15,
+        hilbert_half_length_samples: int = 11,
         low_pass_half_length_samples: int = 15,
         low_pass_cutoff_hz: float = 1100000000.0,
     ) -> None: ...
@@ -228,28 +233,28 @@ class EnvelopeConfig:
         [sample] taps on each side
         """
     @hilbert_half_length_samples.setter
-    def hilbert_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def hilbert_half_length_samples(self, value: int) -> None: ...
     @property
     def low_pass_cutoff_hz(self) -> float:
         """
         [Hz] below half the sample rate
         """
     @low_pass_cutoff_hz.setter
-    def low_pass_cutoff_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def low_pass_cutoff_hz(self, value: float) -> None: ...
     @property
     def low_pass_half_length_samples(self) -> int:
         """
         [sample] taps on each side
         """
     @low_pass_half_length_samples.setter
-    def low_pass_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def low_pass_half_length_samples(self, value: int) -> None: ...
     @property
     def method(self) -> EnvelopeMethod:
         """
         how the envelope is taken
         """
     @method.setter
-    def method(self, arg0: EnvelopeMethod) -> None: ...
+    def method(self, value: EnvelopeMethod) -> None: ...
 
 class Envelope:
     """
@@ -321,12 +326,13 @@ class AlignmentConfig:
         """
     def __copy__(self) -> AlignmentConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> AlignmentConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
         method: AlignmentMethod = ...,
         max_shift_samples: int = 8,
+        window_samples: int = 512,
         interpolator_half_length_samples: int = 8,
     ) -> None: ...
     def __repr__(self) -> str: ...
@@ -340,21 +346,28 @@ class AlignmentConfig:
         [sample] taps on each side
         """
     @interpolator_half_length_samples.setter
-    def interpolator_half_length_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def interpolator_half_length_samples(self, value: int) -> None: ...
     @property
     def max_shift_samples(self) -> int:
         """
         [sample] searched on each side
         """
     @max_shift_samples.setter
-    def max_shift_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def max_shift_samples(self, value: int) -> None: ...
     @property
     def method(self) -> AlignmentMethod:
         """
         how finely
         """
     @method.setter
-    def method(self, arg0: AlignmentMethod) -> None: ...
+    def method(self, value: AlignmentMethod) -> None: ...
+    @property
+    def window_samples(self) -> int:
+        """
+        [sample] compared, around the background's strongest one; >= 8
+        """
+    @window_samples.setter
+    def window_samples(self, value: int) -> None: ...
 
 class Alignment:
     """
@@ -463,6 +476,7 @@ class MixtureConfig:
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     initialisation: PeakInitialisation
+    max_iterations: int
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -470,7 +484,7 @@ class MixtureConfig:
         """
     def __copy__(self) -> MixtureConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> MixtureConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -493,39 +507,35 @@ class MixtureConfig:
         [1/m^2], 0: none
         """
     @background_density_per_m2.setter
-    def background_density_per_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def background_density_per_m2(self, value: float) -> None: ...
     @property
     def covariance_floor_m2(self) -> float:
         """
         [m^2]
         """
     @covariance_floor_m2.setter
-    def covariance_floor_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def covariance_floor_m2(self, value: float) -> None: ...
     @property
     def initial_std_m(self) -> float:
         """
         [m]
         """
     @initial_std_m.setter
-    def initial_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def max_iterations(self) -> int: ...
-    @max_iterations.setter
-    def max_iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def initial_std_m(self, value: float) -> None: ...
     @property
     def restarts(self) -> int:
         """
         of k_means_plus_plus
         """
     @restarts.setter
-    def restarts(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def restarts(self, value: int) -> None: ...
     @property
     def tolerance_m(self) -> float:
         """
         [m]
         """
     @tolerance_m.setter
-    def tolerance_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def tolerance_m(self, value: float) -> None: ...
 
 class MixtureFitter:
     """
@@ -566,7 +576,7 @@ class PulseIntegratorConfig:
         """
     def __copy__(self) -> PulseIntegratorConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> PulseIntegratorConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(self, *, pulses_per_scan: int = 1) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -579,7 +589,7 @@ class PulseIntegratorConfig:
         pulse responses averaged into one scan, >= 1
         """
     @pulses_per_scan.setter
-    def pulses_per_scan(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def pulses_per_scan(self, value: int) -> None: ...
 
 class PulseIntegrator:
     """
@@ -644,7 +654,7 @@ class DirectPathConfig:
         """
     def __copy__(self) -> DirectPathConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> DirectPathConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -664,28 +674,28 @@ class DirectPathConfig:
         that noise crosses within noise_samples, in (1e-6, 1)
         """
     @early_detection_probability.setter
-    def early_detection_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def early_detection_probability(self, value: float) -> None: ...
     @property
     def noise_samples(self) -> int:
         """
         [sample] that give the noise, >= 8
         """
     @noise_samples.setter
-    def noise_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def noise_samples(self, value: int) -> None: ...
     @property
     def search(self) -> DirectPathSearch:
         """
         from where to where
         """
     @search.setter
-    def search(self, arg0: DirectPathSearch) -> None: ...
+    def search(self, value: DirectPathSearch) -> None: ...
     @property
     def window_samples(self) -> int:
         """
         [sample] searched before the peak
         """
     @window_samples.setter
-    def window_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def window_samples(self, value: int) -> None: ...
 
 class DirectPath:
     """
@@ -778,7 +788,7 @@ class ClutterConfig:
         """
     def __copy__(self) -> ClutterConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> ClutterConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -798,28 +808,28 @@ class ClutterConfig:
         weight of the past, in (0, 1)
         """
     @averaging_factor.setter
-    def averaging_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def averaging_factor(self, value: float) -> None: ...
     @property
     def difference_lag_scans(self) -> int:
         """
         frame difference: how much earlier
         """
     @difference_lag_scans.setter
-    def difference_lag_scans(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def difference_lag_scans(self, value: int) -> None: ...
     @property
     def learning_scans(self) -> int:
         """
         scans that make a background, >= 1
         """
     @learning_scans.setter
-    def learning_scans(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def learning_scans(self, value: int) -> None: ...
     @property
     def method(self) -> ClutterMethod:
         """
         what is taken as background
         """
     @method.setter
-    def method(self, arg0: ClutterMethod) -> None: ...
+    def method(self, value: ClutterMethod) -> None: ...
 
 class ClutterFilter:
     """
@@ -896,7 +906,7 @@ class CfarConfig:
         """
     def __copy__(self) -> CfarConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> CfarConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -922,70 +932,70 @@ class CfarConfig:
         [sample] buffer: 1 .. 128
         """
     @buffer_samples.setter
-    def buffer_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def buffer_samples(self, value: int) -> None: ...
     @property
     def false_alarm_probability(self) -> float:
         """
         per sample, in [1e-9, 0.5]
         """
     @false_alarm_probability.setter
-    def false_alarm_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def false_alarm_probability(self, value: float) -> None: ...
     @property
     def global_factor(self) -> float:
         """
         buffer: weight of the global power, >= 0
         """
     @global_factor.setter
-    def global_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def global_factor(self, value: float) -> None: ...
     @property
     def guard_cells_per_side(self) -> int:
         """
         [sample] >= 0
         """
     @guard_cells_per_side.setter
-    def guard_cells_per_side(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def guard_cells_per_side(self, value: int) -> None: ...
     @property
     def local_factor(self) -> float:
         """
         buffer: weight of the local power, > 0
         """
     @local_factor.setter
-    def local_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def local_factor(self, value: float) -> None: ...
     @property
     def max_rises(self) -> int:
         """
         buffer: more rises freeze the local power
         """
     @max_rises.setter
-    def max_rises(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def max_rises(self, value: int) -> None: ...
     @property
     def method(self) -> CfarMethod:
         """
         where the threshold comes from
         """
     @method.setter
-    def method(self, arg0: CfarMethod) -> None: ...
+    def method(self, value: CfarMethod) -> None: ...
     @property
     def ordered_rank_fraction(self) -> float:
         """
         rank over cells, in (0, 1]
         """
     @ordered_rank_fraction.setter
-    def ordered_rank_fraction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def ordered_rank_fraction(self, value: float) -> None: ...
     @property
     def rise_threshold_factor(self) -> float:
         """
         buffer: a rise over the global power
         """
     @rise_threshold_factor.setter
-    def rise_threshold_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def rise_threshold_factor(self, value: float) -> None: ...
     @property
     def training_cells_per_side(self) -> int:
         """
         [sample] 1 .. 64
         """
     @training_cells_per_side.setter
-    def training_cells_per_side(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def training_cells_per_side(self, value: int) -> None: ...
 
 class CfarDetector:
     """
@@ -1019,7 +1029,7 @@ class NoiseFloorConfig:
         """
     def __copy__(self) -> NoiseFloorConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> NoiseFloorConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self, *, factor: float = 0.0, block_samples: int = 24, averaging_factor: float = 0.98
     ) -> None: ...
@@ -1034,21 +1044,21 @@ class NoiseFloorConfig:
         weight of the past, in (0, 1)
         """
     @averaging_factor.setter
-    def averaging_factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def averaging_factor(self, value: float) -> None: ...
     @property
     def block_samples(self) -> int:
         """
         [sample] length of a block
         """
     @block_samples.setter
-    def block_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def block_samples(self, value: int) -> None: ...
     @property
     def factor(self) -> float:
         """
         least amplitude over the floor, >= 0; 0: none
         """
     @factor.setter
-    def factor(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def factor(self, value: float) -> None: ...
 
 class NoiseFloor:
     """
@@ -1116,7 +1126,7 @@ class RangeClusterConfig:
         """
     def __copy__(self) -> RangeClusterConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> RangeClusterConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1135,21 +1145,21 @@ class RangeClusterConfig:
         [s] closer medians merge
         """
     @merge_distance_s.setter
-    def merge_distance_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def merge_distance_s(self, value: float) -> None: ...
     @property
     def min_weight(self) -> int:
         """
         lighter clusters are dropped, >= 1
         """
     @min_weight.setter
-    def min_weight(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def min_weight(self, value: int) -> None: ...
     @property
     def representative(self) -> ClusterRepresentative:
         """
         what a cluster stands for
         """
     @representative.setter
-    def representative(self, arg0: ClusterRepresentative) -> None: ...
+    def representative(self, value: ClusterRepresentative) -> None: ...
 
 class RangeClusterer:
     """
@@ -1225,7 +1235,7 @@ class SensorRadarNodeConfig:
         """
     def __copy__(self) -> SensorRadarNodeConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> SensorRadarNodeConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1257,56 +1267,56 @@ class SensorRadarNodeConfig:
         [m] transmitter to receiver, 0 if monostatic
         """
     @baseline_m.setter
-    def baseline_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def baseline_m(self, value: float) -> None: ...
     @property
     def blind_zone_s(self) -> float:
         """
         [s] after the direct path: not judged, >= 0
         """
     @blind_zone_s.setter
-    def blind_zone_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def blind_zone_s(self, value: float) -> None: ...
     @property
     def delay_offset_s(self) -> float:
         """
         [s] calibration, added to every delay
         """
     @delay_offset_s.setter
-    def delay_offset_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def delay_offset_s(self, value: float) -> None: ...
     @property
     def first_sample_s(self) -> float:
         """
         [s] delay of sample 0, if recorded
         """
     @first_sample_s.setter
-    def first_sample_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def first_sample_s(self, value: float) -> None: ...
     @property
     def n_samples(self) -> int:
         """
         [sample] of a scan
         """
     @n_samples.setter
-    def n_samples(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def n_samples(self, value: int) -> None: ...
     @property
     def node_id(self) -> int:
         """
         >= 0
         """
     @node_id.setter
-    def node_id(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def node_id(self, value: int) -> None: ...
     @property
     def sample_rate_hz(self) -> float:
         """
         [Hz]
         """
     @sample_rate_hz.setter
-    def sample_rate_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def sample_rate_hz(self, value: float) -> None: ...
     @property
     def time_zero(self) -> TimeZero:
         """
         where delays are counted from
         """
     @time_zero.setter
-    def time_zero(self, arg0: TimeZero) -> None: ...
+    def time_zero(self, value: TimeZero) -> None: ...
 
 class SensorRadarNode:
     """
@@ -1357,7 +1367,7 @@ class Point:
         """
     def __copy__(self) -> Point: ...
     def __deepcopy__(self, memo: typing.Any) -> Point: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(self, *, x_m: float = 0.0, y_m: float = 0.0) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -1370,14 +1380,14 @@ class Point:
         [m]
         """
     @x_m.setter
-    def x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def x_m(self, value: float) -> None: ...
     @property
     def y_m(self) -> float:
         """
         [m]
         """
     @y_m.setter
-    def y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def y_m(self, value: float) -> None: ...
 
 class Area:
     """
@@ -1392,7 +1402,7 @@ class Area:
         """
     def __copy__(self) -> Area: ...
     def __deepcopy__(self, memo: typing.Any) -> Area: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self, *, min_x_m: float = 0.0, min_y_m: float = 0.0, max_x_m: float = 0.0, max_y_m: float = 0.0
     ) -> None: ...
@@ -1407,28 +1417,28 @@ class Area:
         [m]
         """
     @max_x_m.setter
-    def max_x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def max_x_m(self, value: float) -> None: ...
     @property
     def max_y_m(self) -> float:
         """
         [m]
         """
     @max_y_m.setter
-    def max_y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def max_y_m(self, value: float) -> None: ...
     @property
     def min_x_m(self) -> float:
         """
         [m]
         """
     @min_x_m.setter
-    def min_x_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def min_x_m(self, value: float) -> None: ...
     @property
     def min_y_m(self) -> float:
         """
         [m]
         """
     @min_y_m.setter
-    def min_y_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def min_y_m(self, value: float) -> None: ...
 
 class NodeSite:
     """
@@ -1436,6 +1446,7 @@ class NodeSite:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    node_id: int
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -1443,7 +1454,7 @@ class NodeSite:
         """
     def __copy__(self) -> NodeSite: ...
     def __deepcopy__(self, memo: typing.Any) -> NodeSite: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(self, *, node_id: int = 0, tx: Point = ..., rx: Point = ...) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -1451,23 +1462,19 @@ class NodeSite:
         Name of the first field with an impossible value, or None.
         """
     @property
-    def node_id(self) -> int: ...
-    @node_id.setter
-    def node_id(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    @property
     def rx(self) -> Point:
         """
         [m]
         """
     @rx.setter
-    def rx(self, arg0: Point) -> None: ...
+    def rx(self, value: Point) -> None: ...
     @property
     def tx(self) -> Point:
         """
         [m]
         """
     @tx.setter
-    def tx(self, arg0: Point) -> None: ...
+    def tx(self, value: Point) -> None: ...
 
 class EllipseRefinement:
     """
@@ -1516,7 +1523,7 @@ class EllipseConfig:
         """
     def __copy__(self) -> EllipseConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> EllipseConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1537,28 +1544,28 @@ class EllipseConfig:
         [m]
         """
     @body_radius_m.setter
-    def body_radius_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def body_radius_m(self, value: float) -> None: ...
     @property
     def max_iterations(self) -> int:
         """
         of Gauss-Newton
         """
     @max_iterations.setter
-    def max_iterations(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def max_iterations(self, value: int) -> None: ...
     @property
     def max_step_m(self) -> float:
         """
         [m]
         """
     @max_step_m.setter
-    def max_step_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def max_step_m(self, value: float) -> None: ...
     @property
     def robust_scale_m(self) -> float:
         """
         [m] 0: all paths alike
         """
     @robust_scale_m.setter
-    def robust_scale_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def robust_scale_m(self, value: float) -> None: ...
 
 class EllipseFix:
     @property
@@ -1603,6 +1610,22 @@ class CoverageConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    antenna_gain_db: float
+    bandwidth_hz: float
+    blind_zone_s: float
+    body_radius_m: float
+    centre_hz: float
+    excess_path_loss_1m_db: float
+    frequency_exponent: float
+    min_snr_db: float
+    noise_figure_db: float
+    noise_temperature_K: float
+    path_loss_exponent: float
+    path_sigma_m: float
+    pulse_interval_s: float
+    pulses_per_scan: int
+    radar_cross_section_m2: float
+    transmit_power_dbm: float
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -1610,7 +1633,7 @@ class CoverageConfig:
         """
     def __copy__(self) -> CoverageConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> CoverageConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1636,70 +1659,6 @@ class CoverageConfig:
         """
         Name of the first field with an impossible value, or None.
         """
-    @property
-    def antenna_gain_db(self) -> float: ...
-    @antenna_gain_db.setter
-    def antenna_gain_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def bandwidth_hz(self) -> float: ...
-    @bandwidth_hz.setter
-    def bandwidth_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def blind_zone_s(self) -> float: ...
-    @blind_zone_s.setter
-    def blind_zone_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def body_radius_m(self) -> float: ...
-    @body_radius_m.setter
-    def body_radius_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def centre_hz(self) -> float: ...
-    @centre_hz.setter
-    def centre_hz(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def excess_path_loss_1m_db(self) -> float: ...
-    @excess_path_loss_1m_db.setter
-    def excess_path_loss_1m_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def frequency_exponent(self) -> float: ...
-    @frequency_exponent.setter
-    def frequency_exponent(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def min_snr_db(self) -> float: ...
-    @min_snr_db.setter
-    def min_snr_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def noise_figure_db(self) -> float: ...
-    @noise_figure_db.setter
-    def noise_figure_db(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def noise_temperature_K(self) -> float: ...
-    @noise_temperature_K.setter
-    def noise_temperature_K(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def path_loss_exponent(self) -> float: ...
-    @path_loss_exponent.setter
-    def path_loss_exponent(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def path_sigma_m(self) -> float: ...
-    @path_sigma_m.setter
-    def path_sigma_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def pulse_interval_s(self) -> float: ...
-    @pulse_interval_s.setter
-    def pulse_interval_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def pulses_per_scan(self) -> int: ...
-    @pulses_per_scan.setter
-    def pulses_per_scan(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    @property
-    def radar_cross_section_m2(self) -> float: ...
-    @radar_cross_section_m2.setter
-    def radar_cross_section_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def transmit_power_dbm(self) -> float: ...
-    @transmit_power_dbm.setter
-    def transmit_power_dbm(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
 
 class Coverage:
     def __init__(self) -> None: ...
@@ -1721,6 +1680,8 @@ class FrameAssemblerConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    dead_after_frames: int
+    resync_after_reports: int
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -1728,7 +1689,7 @@ class FrameAssemblerConfig:
         """
     def __copy__(self) -> FrameAssemblerConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> FrameAssemblerConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1743,27 +1704,19 @@ class FrameAssemblerConfig:
         Name of the first field with an impossible value, or None.
         """
     @property
-    def dead_after_frames(self) -> int: ...
-    @dead_after_frames.setter
-    def dead_after_frames(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    @property
     def deadline_us(self) -> int:
         """
         [us]
         """
     @deadline_us.setter
-    def deadline_us(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def deadline_us(self, value: int) -> None: ...
     @property
     def max_delay_s(self) -> float:
         """
         [s]
         """
     @max_delay_s.setter
-    def max_delay_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def resync_after_reports(self) -> int: ...
-    @resync_after_reports.setter
-    def resync_after_reports(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def max_delay_s(self, value: float) -> None: ...
 
 class FrameAssemblerCounters:
     @property
@@ -1888,7 +1841,7 @@ class SelectionConfig:
         """
     def __copy__(self) -> SelectionConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> SelectionConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -1920,91 +1873,91 @@ class SelectionConfig:
         [m]
         """
     @coarse_residual_m.setter
-    def coarse_residual_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def coarse_residual_m(self, value: float) -> None: ...
     @property
     def echo_tail_m(self) -> float:
         """
         [m]
         """
     @echo_tail_m.setter
-    def echo_tail_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def echo_tail_m(self, value: float) -> None: ...
     @property
     def max_equation_residual_m3(self) -> float:
         """
         [m^3]
         """
     @max_equation_residual_m3.setter
-    def max_equation_residual_m3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def max_equation_residual_m3(self, value: float) -> None: ...
     @property
     def max_range_residual_m(self) -> float:
         """
         [m]
         """
     @max_range_residual_m.setter
-    def max_range_residual_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def max_range_residual_m(self, value: float) -> None: ...
     @property
     def min_own_support(self) -> int:
         """
         nodes
         """
     @min_own_support.setter
-    def min_own_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def min_own_support(self, value: int) -> None: ...
     @property
     def min_support(self) -> int:
         """
         nodes
         """
     @min_support.setter
-    def min_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def min_support(self, value: int) -> None: ...
     @property
     def min_support_fraction(self) -> float:
         """
         of the nodes that reported
         """
     @min_support_fraction.setter
-    def min_support_fraction(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def min_support_fraction(self, value: float) -> None: ...
     @property
     def min_weight(self) -> float:
         """
         [1]
         """
     @min_weight.setter
-    def min_weight(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def min_weight(self, value: float) -> None: ...
     @property
     def nodes_per_tuple(self) -> int:
         """
         nu
         """
     @nodes_per_tuple.setter
-    def nodes_per_tuple(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def nodes_per_tuple(self, value: int) -> None: ...
     @property
     def support_gate_m(self) -> float:
         """
         [m]
         """
     @support_gate_m.setter
-    def support_gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def support_gate_m(self, value: float) -> None: ...
     @property
     def track_gate_m(self) -> float:
         """
         [m]
         """
     @track_gate_m.setter
-    def track_gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def track_gate_m(self, value: float) -> None: ...
     @property
     def track_min_own_support(self) -> int:
         """
         nodes
         """
     @track_min_own_support.setter
-    def track_min_own_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def track_min_own_support(self, value: int) -> None: ...
     @property
     def track_min_support(self) -> int:
         """
         nodes
         """
     @track_min_support.setter
-    def track_min_support(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def track_min_support(self, value: int) -> None: ...
 
 class SelectionCounters:
     @property
@@ -2092,7 +2045,7 @@ class PointClusterConfig:
         """
     def __copy__(self) -> PointClusterConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> PointClusterConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(self, *, distance: ClusterDistance = ..., threshold_m: float = 0.8) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -2105,7 +2058,7 @@ class PointClusterConfig:
         [m]
         """
     @threshold_m.setter
-    def threshold_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def threshold_m(self, value: float) -> None: ...
 
 class PointClusters:
     def __init__(self) -> None: ...
@@ -2160,7 +2113,11 @@ class PhdConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    mass_average_frames: int
+    newborn_per_measurement: int
+    particles_per_target: int
     resampling: ResamplingChance
+    seed: int
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -2168,7 +2125,7 @@ class PhdConfig:
         """
     def __copy__(self) -> PhdConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> PhdConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -2197,72 +2154,56 @@ class PhdConfig:
         [m^2/s^3]
         """
     @acceleration_density_m2ps3.setter
-    def acceleration_density_m2ps3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def acceleration_density_m2ps3(self, value: float) -> None: ...
     @property
     def area_m2(self) -> float:
         """
         [m^2]
         """
     @area_m2.setter
-    def area_m2(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def area_m2(self, value: float) -> None: ...
     @property
     def birth_per_frame(self) -> float:
         """
         expected, uniform over the area
         """
     @birth_per_frame.setter
-    def birth_per_frame(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def birth_per_frame(self, value: float) -> None: ...
     @property
     def clutter_per_frame(self) -> float:
         """
         expected, uniform over the area
         """
     @clutter_per_frame.setter
-    def clutter_per_frame(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def clutter_per_frame(self, value: float) -> None: ...
     @property
     def detection_probability(self) -> float:
         """
         per frame
         """
     @detection_probability.setter
-    def detection_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def mass_average_frames(self) -> int: ...
-    @mass_average_frames.setter
-    def mass_average_frames(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def detection_probability(self, value: float) -> None: ...
     @property
     def measurement_std_m(self) -> float:
         """
         [m] per coordinate
         """
     @measurement_std_m.setter
-    def measurement_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def newborn_per_measurement(self) -> int: ...
-    @newborn_per_measurement.setter
-    def newborn_per_measurement(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def measurement_std_m(self, value: float) -> None: ...
     @property
     def newborn_velocity_std_mps(self) -> float:
         """
         [m/s] per coordinate
         """
     @newborn_velocity_std_mps.setter
-    def newborn_velocity_std_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def particles_per_target(self) -> int: ...
-    @particles_per_target.setter
-    def particles_per_target(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
-    @property
-    def seed(self) -> int: ...
-    @seed.setter
-    def seed(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def newborn_velocity_std_mps(self, value: float) -> None: ...
     @property
     def survival_probability(self) -> float:
         """
         per frame
         """
     @survival_probability.setter
-    def survival_probability(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def survival_probability(self, value: float) -> None: ...
 
 class PhdFilter:
     """
@@ -2406,6 +2347,7 @@ class TrackManagerConfig:
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
     association: AssociationRule
+    silent_time_per_confirmed: float
     update: TrackUpdate
     @staticmethod
     def fields() -> tuple[str, ...]:
@@ -2414,7 +2356,7 @@ class TrackManagerConfig:
         """
     def __copy__(self) -> TrackManagerConfig: ...
     def __deepcopy__(self, memo: typing.Any) -> TrackManagerConfig: ...
-    def __eq__(self, arg0: typing.Any) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
         self,
         *,
@@ -2425,7 +2367,7 @@ class TrackManagerConfig:
         gate_sigma: float = 4.0,
         silent_gate_growth_mps: float = 0.2,
         silent_gate_max_m: float = 1.5,
-        birth_exclusion_m: float = 0.3,
+        birth_exclusion_m: float = 0.5,
         confirm_updates: int = 3,
         silent_time_min_s: float = 1.0,
         silent_time_per_confirmed: float = 1.0,
@@ -2446,95 +2388,91 @@ class TrackManagerConfig:
         [m^2/s^3]
         """
     @acceleration_density_m2ps3.setter
-    def acceleration_density_m2ps3(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def acceleration_density_m2ps3(self, value: float) -> None: ...
     @property
     def birth_exclusion_m(self) -> float:
         """
         [m]
         """
     @birth_exclusion_m.setter
-    def birth_exclusion_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def birth_exclusion_m(self, value: float) -> None: ...
     @property
     def confirm_updates(self) -> int:
         """
         the first point included
         """
     @confirm_updates.setter
-    def confirm_updates(self, arg1: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def confirm_updates(self, value: int) -> None: ...
     @property
     def cost_max_m(self) -> float:
         """
         [m] of hypothesis_cost
         """
     @cost_max_m.setter
-    def cost_max_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def cost_max_m(self, value: float) -> None: ...
     @property
     def gate_m(self) -> float:
         """
         [m]
         """
     @gate_m.setter
-    def gate_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def gate_m(self, value: float) -> None: ...
     @property
     def gate_sigma(self) -> float:
         """
         deviations, of kalman; 0: no test
         """
     @gate_sigma.setter
-    def gate_sigma(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def gate_sigma(self, value: float) -> None: ...
     @property
     def measurement_std_m(self) -> float:
         """
         [m] of kalman
         """
     @measurement_std_m.setter
-    def measurement_std_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def measurement_std_m(self, value: float) -> None: ...
     @property
     def silent_gate_growth_mps(self) -> float:
         """
         [m/s]
         """
     @silent_gate_growth_mps.setter
-    def silent_gate_growth_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def silent_gate_growth_mps(self, value: float) -> None: ...
     @property
     def silent_gate_max_m(self) -> float:
         """
         [m]
         """
     @silent_gate_max_m.setter
-    def silent_gate_max_m(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def silent_gate_max_m(self, value: float) -> None: ...
     @property
     def silent_time_max_s(self) -> float:
         """
         [s]
         """
     @silent_time_max_s.setter
-    def silent_time_max_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def silent_time_max_s(self, value: float) -> None: ...
     @property
     def silent_time_min_s(self) -> float:
         """
         [s]
         """
     @silent_time_min_s.setter
-    def silent_time_min_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
-    @property
-    def silent_time_per_confirmed(self) -> float: ...
-    @silent_time_per_confirmed.setter
-    def silent_time_per_confirmed(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def silent_time_min_s(self, value: float) -> None: ...
     @property
     def silent_velocity_time_s(self) -> float:
         """
         [s]
         """
     @silent_velocity_time_s.setter
-    def silent_velocity_time_s(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def silent_velocity_time_s(self, value: float) -> None: ...
     @property
     def velocity_std_mps(self) -> float:
         """
         [m/s]
         """
     @velocity_std_mps.setter
-    def velocity_std_mps(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def velocity_std_mps(self, value: float) -> None: ...
 
 class TrackManager:
     """
@@ -2607,6 +2545,174 @@ class KalmanTracker:
     def reset(self) -> None: ...
     @property
     def dropped_births(self) -> int: ...
+
+class Tracker:
+    """
+    Members:
+
+      phd
+
+      kalman
+    """
+
+    __members__: typing.ClassVar[dict[str, Tracker]]
+    kalman: typing.ClassVar[Tracker]
+    phd: typing.ClassVar[Tracker]
+    @typing.overload
+    def __eq__(self, other: Tracker) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Tracker) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class SensorRadarHubConfig:
+    """
+    The hub of the pipeline sensor_radar.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    ellipse: EllipseConfig
+    em: MixtureConfig
+    frame_assembler: FrameAssemblerConfig
+    phd: PhdConfig
+    point_clusters: PointClusterConfig
+    selection: SelectionConfig
+    tracks: TrackManagerConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> SensorRadarHubConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> SensorRadarHubConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        nodes: collections.abc.Sequence[NodeSite] = ...,
+        n_nodes: int = 0,
+        area: Area = ...,
+        frame_period_s: float = 0.1,
+        aid_missed_frames: int = 3,
+        tracker: Tracker = ...,
+        frame_assembler: FrameAssemblerConfig = ...,
+        ellipse: EllipseConfig = ...,
+        selection: SelectionConfig = ...,
+        point_clusters: PointClusterConfig = ...,
+        phd: PhdConfig = ...,
+        em: MixtureConfig = ...,
+        tracks: TrackManagerConfig = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    def set_area(
+        self,
+        min_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        min_y_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_y_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def set_nodes(
+        self,
+        node_ids: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        tx_m: numpy.typing.NDArray[numpy.float32],
+        rx_m: numpy.typing.NDArray[numpy.float32],
+    ) -> None:
+        """
+        Sets nodes and n_nodes from positions (n, 2) [m].
+        """
+    @property
+    def aid_missed_frames(self) -> int:
+        """
+        tracks silent for more frames do not help the selection, >= 0
+        """
+    @aid_missed_frames.setter
+    def aid_missed_frames(self, value: int) -> None: ...
+    @property
+    def area(self) -> Area:
+        """
+        where people are looked for
+        """
+    @area.setter
+    def area(self, value: Area) -> None: ...
+    @property
+    def frame_period_s(self) -> float:
+        """
+        [s] taken for the first frame, > 0
+        """
+    @frame_period_s.setter
+    def frame_period_s(self, value: float) -> None: ...
+    @property
+    def n_nodes(self) -> int:
+        """
+        at least 3
+        """
+    @n_nodes.setter
+    def n_nodes(self, value: int) -> None: ...
+    @property
+    def nodes(self) -> collections.abc.Sequence[NodeSite]:
+        """
+        the first n_nodes
+        """
+    @nodes.setter
+    def nodes(self, value: collections.abc.Sequence[NodeSite]) -> None: ...
+    @property
+    def tracker(self) -> Tracker:
+        """
+        what follows the points
+        """
+    @tracker.setter
+    def tracker(self, value: Tracker) -> None: ...
+
+class SensorRadarHub:
+    """
+    The nodes' reports in, tracks out.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: SensorRadarHubConfig) -> Status: ...
+    def counters(self) -> dict:
+        """
+        What happened since configure(), by name.
+        """
+    def poll(self, now_us: typing.SupportsInt | typing.SupportsIndex) -> tuple:
+        """
+        (status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of Track.
+        """
+    def poll_with_taps(
+        self, now_us: typing.SupportsInt | typing.SupportsIndex
+    ) -> tuple[typing.Any, typing.Any, dict]:
+        """
+        (status, None or (time_us, frame, tracks), taps by name, each (n, columns)).
+        """
+    def receive(
+        self,
+        node_id: typing.SupportsInt | typing.SupportsIndex,
+        frame: typing.SupportsInt | typing.SupportsIndex,
+        delay_s: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        now_us: typing.SupportsInt | typing.SupportsIndex,
+    ) -> Status:
+        """
+        One node's report; frame counts the node's scans.
+        """
+    def reset(self) -> None: ...
 
 def assign(cost: numpy.typing.NDArray[numpy.float32]) -> tuple[Status, numpy.typing.NDArray[numpy.int32]]:
     """
@@ -2697,4 +2803,6 @@ LIMITS: dict = {
     "max_newborn_particles": 1024,
     "max_assignment": 32,
 }
-SENSOR_RADAR_NODE_BYTES: int = 65888
+MEASUREMENT_STAGES_BYTES: int = 33976
+SENSOR_RADAR_HUB_BYTES: int = 135096
+SENSOR_RADAR_NODE_BYTES: int = 65912

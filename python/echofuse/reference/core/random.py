@@ -59,7 +59,7 @@ class Pcg32:
 
     def uniforms(self, n: int) -> NDArray[np.float64]:
         """Draw from [0, 1) n times, (n,): multiples of 2^-24, exact in float32 as well."""
-        return (self.draws(n) >> np.uint32(8)) * 2.0**-24
+        return (self.draws(n) >> np.uint32(8)).astype(np.float64) * 2.0**-24
 
     def normals(self, n: int) -> NDArray[np.float64]:
         """Draw n standard normals, (n,): the inverse distribution in the middles of 2^24 equal steps."""
@@ -96,4 +96,5 @@ def inverse_normal(offset: NDArray[np.float64]) -> NDArray[np.float64]:
     centre = offset * np.polyval(_CENTRE[0], distance) / np.polyval(_CENTRE[1], distance)
     root = np.sqrt(-np.log(tail)) - 1.6
     outside = np.sign(offset) * np.polyval(_TAIL[0], root) / np.polyval(_TAIL[1], root)
-    return np.where(np.abs(offset) <= 0.425, centre, outside)
+    values: NDArray[np.float64] = np.where(np.abs(offset) <= 0.425, centre, outside)
+    return values
