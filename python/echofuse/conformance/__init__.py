@@ -17,7 +17,9 @@ def conform(
     out: Path | None = None,
     progress: Progress | None = None,
 ) -> bool:
-    """Compare the library with its reference and print the table; whether all agreed, and every tap was compared.
+    """Compare the library with its reference and print the table; return whether all agreed.
+
+    A tap that was never compared does not agree.
 
     Parameters
     ----------

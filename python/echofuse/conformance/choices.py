@@ -1,4 +1,4 @@
-"""What is conformed: each choice of each stage, one at a time from the default, and some that people combine."""
+"""What is conformed: each choice of each stage, one at a time from the default, and some together."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -20,9 +20,10 @@ class Choice:
     shared_transmitter: bool = False  # hub: possible only where all nodes share one
 
     def selects(self, number: int, frame: int) -> bool:
-        """Whether the selection, by far the slowest stage of the reference, is compared in a frame of an input.
+        """Whether the selection, by far the slowest of the reference, is compared in a frame of an input.
 
-        One frame of every input under choices that bear on it, before or after a track is confirmed; else of some.
+        One frame of every input under choices that bear on it, before or after a track is confirmed; else of
+        some inputs.
         """
         bears = self.name == "default" or any(key.startswith(SELECTING) for key in self.settings)
         return frame == (1, 5, 5, 8)[number % 4] and (bears or number % 4 == 1)

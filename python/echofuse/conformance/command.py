@@ -32,7 +32,7 @@ def conform_sensor_radar(
     verdict = "all agree with the reference" if scores.passed else "NOT all agree with the reference"
     rows = sum(len(board.rows()) for board in scores.boards.values())
     print(
-        f"{target.name}: {rows} taps of choices over {seeds} seeds and {about_walk}: {verdict} ({took_s:.0f} s)"
+        f"{target.name}, {seeds} seeds and {about_walk}: {rows} taps of choices, {verdict} ({took_s:.0f} s)"
     )
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)

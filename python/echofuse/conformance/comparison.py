@@ -52,7 +52,7 @@ class Scoreboard:
         return [asdict(row) | {"passed": row.passed} for row in self.rows()]
 
     def row(self, choice: str, tap: str) -> Row:
-        """Return the row, made at its first mention: a tap that never comes shows up as 'nothing compared'."""
+        """Return the row, made at its first mention: a tap that never comes is 'nothing compared'."""
         return self._rows.setdefault((choice, tap), Row(choice=choice, tap=tap))
 
     def floats(
@@ -68,10 +68,11 @@ class Scoreboard:
     ) -> bool:
         """Compare two arrays of any shape within the row of the tolerance table; return whether they agree.
 
-        `scale`: what the relative tolerance is relative to, if not the largest magnitude of the reference's; one value, or one a value.
+        `scale`: what the relative tolerance is relative to, if not the reference's largest magnitude; one
+        value, or one a value.
 
-        `margin` belongs to the reference's decisions on which the values rest: where it is a coin toss, values may
-        differ, and are counted as excused.
+        `margin` belongs to the reference's decisions on which the values rest: where it is a coin toss, values
+        may differ, and are counted as excused.
         """
         row = self.row(choice, tap)
         got, expected = np.atleast_1d(to_float64(target)), np.atleast_1d(to_float64(reference))
@@ -95,7 +96,8 @@ class Scoreboard:
         row.worst = max(row.worst, float(excess.flat[worst]))
         if excess.flat[worst] > 1.0:
             row.failures.append(
-                f"{where}: element {worst} is {got.flat[worst]:.9g}, the reference says {expected.flat[worst]:.9g} "
+                f"{where}: element {worst} is {got.flat[worst]:.9g}, "
+                f"the reference says {expected.flat[worst]:.9g} "
                 f"({excess.flat[worst]:.3g} times the tolerance)"
             )
             return False
@@ -106,7 +108,7 @@ class Scoreboard:
     ) -> bool:
         """Compare decisions of one shape; `margin` is the reference's distance from deciding otherwise.
 
-        Returns whether they are identical, so that what depends on them may be compared further. Another number of
+        Returns whether they are identical, so that what depends on them may be compared. Another number of
         decisions (of clusters, say) is excused when one decision that made them was a coin toss.
         """
         row = self.row(choice, tap)

@@ -1,4 +1,4 @@
-"""One whole run: target and reference each on their own, from raw scans to tracks, with nothing handed over."""
+"""One whole run: target and reference each on their own, from raw scans to tracks."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from echofuse import _core
 from echofuse.conformance.choices import Choice
 from echofuse.conformance.comparison import Scoreboard, as_reference, to_float64
-from echofuse.conformance.hub_inputs import hub_config_of, node_config_of, scene_of
+from echofuse.conformance.hub_inputs import hub_config_of, scene_of
 from echofuse.conformance.hub_reference import hub_limits, reference_report
+from echofuse.conformance.inputs import node_config_of
 from echofuse.conformance.target import ConformanceTarget, Report
 from echofuse.reference.hub.hub import HubFrame, SensorRadarHub
 from echofuse.reference.hub.track.track_manager import CONFIRMED
@@ -37,9 +38,11 @@ def conform_end_to_end(board: Scoreboard, target: ConformanceTarget, frames: int
     """Run one person's walk of the case study, with each tracker."""
     reports = []
     for frame in _listen(board, target, frames):
-        yield reports.append(frame)
+        reports.append(frame)
+        yield
     for tracker in TRACKERS:
-        yield _track(board, target, tracker, reports)
+        _track(board, target, tracker, reports)
+        yield
 
 
 def _listen(board: Scoreboard, target: ConformanceTarget, frames: int) -> Iterator[FrameReports]:
@@ -60,7 +63,8 @@ def _listen(board: Scoreboard, target: ConformanceTarget, frames: int) -> Iterat
                 nodes[which].process(scan, index * SCAN_PERIOD_US),
                 references[which].process(to_float64(scan)),
             )
-            assert answer is not None and report is not None  # one pulse makes a scan
+            assert answer is not None  # one pulse makes a scan
+            assert report is not None
             margin = min(margin, *(float(np.min(np.abs(values))) for values in report.margins.values()))
             where = f"seed 0, frame {index}, {places[which].name}"
             for tracker in TRACKERS:
@@ -76,7 +80,7 @@ def _name(tracker: str) -> str:
     return f"end to end, {tracker}"
 
 
-def _report(node_id: int, frame: int, detections: Array, kind: type[np.floating]) -> Report:  # type: ignore[type-arg]
+def _report(node_id: int, frame: int, detections: Array, kind: type[np.floating]) -> Report:
     delay_s, weight = (np.ascontiguousarray(column, kind) for column in detections.T)
     return Report(node_id, frame, delay_s, weight)
 

@@ -52,7 +52,7 @@ class HubInput:
 
 
 def simulated_hub_inputs(seeds: int) -> Iterator[HubInput]:
-    """One site a seed, in turn of one transmitter, of monostatic nodes, of both; mostly one person, up to three."""
+    """One site a seed, in turn of one transmitter, of monostatic nodes, of both; one to three people."""
     for seed in range(seeds):
         kind = ("shared Tx", "own Tx", "mixed")[seed % 3]
         scene = scene_of(kind)

@@ -1,8 +1,9 @@
 """Compares every tap of a hub with the reference's, stage by stage.
 
-Each stage of the reference gets what the target's stage before it showed, and the particle filter the target's own
-particles of the frame before: rounding does not accumulate into other particles, and a decision that was a coin toss
-is excused once, in the stage that took it. Only the frame assembler and the track manager keep a state of their own.
+Each stage of the reference gets what the target's stage before it showed, and the particle filter the
+target's own particles of the frame before: rounding does not accumulate into other particles, and a decision
+that was a coin toss is excused once, in the stage that took it. Only the frame assembler and the track
+manager keep a state of their own.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,8 @@
 """Compares every tap of a node with the reference's, scan by scan.
 
-Target and reference each keep their own state. What a scan leaves behind depends on its shift, not on the detector's
-decisions: after a decision that was a coin toss, the rest of that scan is not compared; after a shift or a direct
-path that was one, the rest of the input is not.
+Target and reference each keep their own state. What a scan leaves behind depends on its shift, not on the
+detector's decisions: after a decision that was a coin toss, the rest of that scan is not compared; after a
+shift or a direct path that was one, the rest of the input is not.
 """
 
 from collections.abc import Sequence
@@ -160,7 +160,8 @@ class _Scan:
         """How far an edge moves by an error of the residual [sample/count]."""
         residual, threshold = self.expected["residual"], self.expected["threshold"]
         rise = (residual[first] ** 2 - threshold[first]) - (residual[before] ** 2 - threshold[before])
-        return 2.0 * residual[first] / np.maximum(rise, 1e-12)
+        moved: Samples = 2.0 * residual[first] / np.maximum(rise, 1e-12)
+        return moved
 
     def _detections(self, got: Samples, margin: Samples, scale: Samples) -> None:
         expected = self.expected["detections"]

@@ -66,16 +66,18 @@ class Scores:
 
 
 def steps(target: ConformanceTarget, plan: Plan, scores: Scores) -> Iterator[None]:
-    """Compare a target with the reference step by step, `plan.steps()` of them; what is found goes into `scores`."""
+    """Compare in `plan.steps()` steps; what is found goes into `scores`."""
     node_inputs: list[NodeInput] = list(simulated_inputs(plan.seeds))
     hub_inputs: list[HubInput] = list(simulated_hub_inputs(plan.seeds))
     if plan.recording is not None:
         node_inputs += recorded_inputs(plan.recording)
         hub_inputs += recorded_hub_inputs(plan.recording)
     for choice in plan.node_choices:
-        yield conform_node(scores.board("node"), choice, target, node_inputs)
+        conform_node(scores.board("node"), choice, target, node_inputs)
+        yield
     for choice in plan.hub_choices:
-        yield conform_hub(scores.board("hub"), choice, target, hub_inputs)
+        conform_hub(scores.board("hub"), choice, target, hub_inputs)
+        yield
     if plan.end_to_end_frames:
         yield from conform_end_to_end(scores.board("all"), target, plan.end_to_end_frames)
 

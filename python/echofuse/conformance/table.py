@@ -13,7 +13,7 @@ SHOWN_FAILURES = 3  # of a row
 
 
 def format_scores(boards: Mapping[str, Scoreboard]) -> str:
-    """Return one aligned table: a line a choice of each part (nodes, hub, ...), then the failing rows in full."""
+    """Return one aligned table: a line a choice of each part (node, hub, ...), then the failing rows."""
     lines: list[tuple[str, ...]] = [HEADER]
     for part, board in boards.items():
         lines.append((part, *[""] * (len(HEADER) - 1)))

@@ -108,7 +108,10 @@ class InProcessHub:
         """See `HubTarget`."""
         status, closed, taps = self._hub.poll_with_taps(now_us)
         _expect(status, "poll", _core.Status.truncated)
-        return None if closed is None else HubAnswer(*closed, taps)
+        if closed is None:
+            return None
+        time_us, frame, tracks = closed
+        return HubAnswer(time_us, frame, tracks, taps)
 
 
 class InProcessTarget:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Tolerance(NamedTuple):
-    """``|target - reference| <= atol + rtol * scale``; scale is the largest magnitude of the compared array."""
+    """``|target - reference| <= atol + rtol * scale``; scale: largest magnitude of the compared array."""
 
     rtol: float
     atol: float
