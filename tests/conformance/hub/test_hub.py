@@ -51,6 +51,7 @@ def reports(rng, site, k):  # type: ignore[no-untyped-def]
         yield node, delay, rng.uniform(5, 20, len(delay)).astype(np.float32)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tracker", ["kalman", "phd"])
 def test_every_tap(tracker, site_of, core_site):  # type: ignore[no-untyped-def]
     site, board, compared = site_of("bistatic"), Scoreboard(), 0

@@ -74,8 +74,11 @@ def compare(
     return True
 
 
-@pytest.mark.parametrize("kind", ["bistatic", "monostatic", "mixed"])
-@pytest.mark.parametrize("choice", CHOICES)
+@pytest.mark.parametrize("kind", ["bistatic", "monostatic", pytest.param("mixed", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "choice",
+    [pytest.param(name, marks=pytest.mark.slow) if name.startswith("all") else name for name in CHOICES],
+)
 def test_selection(choice, kind, site_of, core_site, frame_of):  # type: ignore[no-untyped-def]
     site = site_of(kind)
     nodes, area = core_site(site)
