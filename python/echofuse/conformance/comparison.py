@@ -68,10 +68,10 @@ class Scoreboard:
     ) -> bool:
         """Compare two arrays of any shape within the row of the tolerance table; return whether they agree.
 
-        `scale`: what the relative tolerance is relative to, if not the reference's largest magnitude; one
-        value, or one a value.
+        `scale`: what the relative tolerance is relative to, if not the reference's largest magnitude;
+        one value, or one a value.
 
-        `margin` belongs to the reference's decisions on which the values rest: where it is a coin toss, values
+        `margin` belongs to the reference's decisions on which the values rest: in a coin toss, values
         may differ, and are counted as excused.
         """
         row = self.row(choice, tap)
