@@ -1,6 +1,7 @@
 """The measuring itself on a clock of its own, and one short run of everything."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,13 @@ def test_a_load_that_comes_and_goes_leaves_the_ratio_alone() -> None:
     assert row.reference_ms > 40.0  # absolute times are worth little then
 
 
+def test_sides_in_step_make_the_same_number_of_calls() -> None:
+    clock = Clock()
+    case = replace(case_of(clock, 0.0001, 0.05), in_step=True)
+    assert compare(case, 1.0, clock).ratio == pytest.approx(500.0)
+    assert clock.log.count("core") == clock.log.count("reference")
+
+
 def test_slow_cases_run_a_few_times_anyway() -> None:
     clock = Clock()
     assert compare(case_of(clock, 1.0, 10.0), 0.0, clock).pairs == MIN_PAIRS
@@ -106,7 +114,7 @@ def test_a_constant_part_hides_in_the_fit_but_less_in_the_last_step() -> None:
     assert fitted < 1.1 < last
 
 
-@pytest.mark.parametrize("axis", AXES, ids=lambda axis: axis.name.split()[0])
+@pytest.mark.parametrize("axis", AXES, ids=lambda axis: axis.name.split(" (")[0])
 def test_the_filters_follow_what_they_are_said_to(axis: Axis) -> None:
     """An exponent against targets is worth nothing if the filter follows fewer of them."""
     for size in axis.sizes:
@@ -141,4 +149,5 @@ def test_every_stage_and_choice_is_measured_and_the_frame_is_20_times_as_fast() 
     ]
     assert min(row["ratio"] for row in table["stages"]) > 0.0
     assert table["whole_frame"]["ratio"] >= 20.0
-    assert len(table["phd_growth"]) == len(AXES)
+    judged = [each["axis"].split()[0] for each in table["phd_growth"] if each["judged"]]
+    assert judged == ["particles", "targets", "measurements"]

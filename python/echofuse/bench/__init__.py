@@ -24,8 +24,8 @@ FRAME_SHARE = 0.15  # of the time
 GROWTH_SHARE = 0.15
 NOTE = (
     "Ratios are medians over pairs of turns in one run. C++ times include the call from Python and its\n"
-    "copies. The reference is written to be obvious, not fast: ratios are in the thousands where it is a loop,\n"
-    "and near one where NumPy does it in one call. Times are of this run on this machine, and no promise."
+    "copies. The reference is written to be obvious, not fast: ratios are in the thousands where it is a\n"
+    "loop, and near one where NumPy does it in one call. Times are of this run, and no promise."
 )
 
 
@@ -45,7 +45,7 @@ def bench(seconds: float = 45.0) -> dict[str, Any]:
     growths = list(phd_growths(seconds * GROWTH_SHARE))
     _print_rows([*rows, frame])
     _print_growths(growths)
-    fast, linear = frame.ratio >= MIN_FRAME_RATIO, all(each.linear for each in growths)
+    fast, linear = frame.ratio >= MIN_FRAME_RATIO, all(each.linear for each in growths if each.judged)
     print(f"\nwhole frame: {frame.ratio:.0f} times as fast, {_verdict(fast)} (at least {MIN_FRAME_RATIO:g})")
     print(f"particle PHD: p up to {_largest(growths):.2f}, {_verdict(linear)} (at most {MAX_EXPONENT:g})")
     print(f"\n{NOTE}")
@@ -78,11 +78,12 @@ def _print_growths(growths: Sequence[Growth]) -> None:
     print("\nparticle PHD, one frame (predict, update, resample): time ~ size^p")
     for each in growths:
         times = "  ".join(f"{size}: {ms:.3f} ms" for size, ms in zip(each.sizes, each.time_ms, strict=True))
-        print(f"p = {each.exponent:5.2f}, last step {each.last_exponent:5.2f}   {each.axis}   {times}")
+        about = "" if each.judged else "   (not judged)"
+        print(f"p = {each.exponent:5.2f}, last step {each.last_exponent:5.2f}   {each.axis}   {times}{about}")
 
 
 def _largest(growths: Sequence[Growth]) -> float:
-    return max(max(each.exponent, each.last_exponent) for each in growths)
+    return max(max(each.exponent, each.last_exponent) for each in growths if each.judged)
 
 
 def _verdict(passed: bool) -> str:

@@ -61,13 +61,18 @@ def hub_cases(material: Material) -> Iterator[Case]:
         name="whole hub",
         core=_core_hub(material, frames),
         reference=_reference_hub(material, frames),
+        in_step=True,
     )
 
 
 def frame_case(material: Material) -> Case:
     """All nodes process a scan each, and the hub what they report."""
     return Case(
-        group="frame", name="whole frame", core=_core_frame(material), reference=_reference_frame(material)
+        group="frame",
+        name="whole frame",
+        core=_core_frame(material),
+        reference=_reference_frame(material),
+        in_step=True,
     )
 
 
@@ -304,6 +309,7 @@ def _reference_hub(material: Material, frames: Sequence[Reports]) -> Run:
             hub.receive(Report(node_id, number, delay_s, weight), number * FRAME_US)
         return hub.poll(number * FRAME_US)
 
+    call()  # as the library did when it was accepted
     return timed(call)
 
 
@@ -337,4 +343,5 @@ def _reference_frame(material: Material) -> Run:
             hub.receive(Report(heard.node_id, number, delay_s, weight), number * FRAME_US)
         return hub.poll(number * FRAME_US)
 
+    call()  # as the library did when it was accepted
     return timed(call)

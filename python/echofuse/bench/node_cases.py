@@ -31,7 +31,9 @@ def node_cases(heard: Heard) -> Iterator[Case]:
     yield from _cfar(heard, taps)
     yield _noise_floor(heard, taps)
     yield from _range_clusters(heard, taps)
-    yield Case(group="node", name="whole node", core=core_node(heard), reference=reference_node(heard))
+    yield Case(
+        group="node", name="whole node", core=core_node(heard), reference=reference_node(heard), in_step=True
+    )
 
 
 def core_node(heard: Heard) -> Run:
@@ -51,6 +53,7 @@ def reference_node(heard: Heard) -> Run:
     """The reference's node, one scan a call."""
     node, frame = listening_reference(heard), back_and_forth(FRAMES)
     scans = [to_float64(scan) for scan in heard.scans]
+    node.process(scans[frame()])  # as the library's did when it was accepted
     return timed(lambda: node.process(scans[frame()]))
 
 

@@ -22,6 +22,7 @@ class Case:
     name: str
     core: Run
     reference: Run
+    in_step: bool = False  # both go through the same frames: one call a turn, so that pairs are of one frame
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +53,8 @@ def compare(case: Case, seconds: float, clock: Clock = time.perf_counter) -> Row
     """Let both sides take turns for some seconds, at least `MIN_PAIRS` times, after one warming turn each."""
     end = clock() + seconds
     core_calls, reference_calls = calls_of_a_turn(case.core), calls_of_a_turn(case.reference)
+    if case.in_step:
+        core_calls = reference_calls = 1
     pairs: list[tuple[float, float]] = []
     while len(pairs) < MIN_PAIRS or clock() < end:
         pairs.append((turn(case.core, core_calls), turn(case.reference, reference_calls)))
