@@ -43,6 +43,7 @@ class HubInput:
     base: "_core.SensorRadarHubConfig"  # what the site says
     shared_transmitter: bool
     instants: tuple[Instant, ...]
+    stand_in: bool = False  # only for choices that need one transmitter, so that they too see every seed
 
     def config(self, choice: Choice) -> "_core.SensorRadarHubConfig":
         """Return the hub's configuration under a choice."""
@@ -52,23 +53,33 @@ class HubInput:
 
 
 def simulated_hub_inputs(seeds: int) -> Iterator[HubInput]:
-    """One site a seed, in turn of one transmitter, of monostatic nodes, of both; one to three people."""
+    """One site a seed, in turn of one transmitter, of monostatic nodes, of both; one to three people.
+
+    Where that is not one transmitter, the same seed with one stands in.
+    """
     for seed in range(seeds):
         kind = ("shared Tx", "own Tx", "mixed")[seed % 3]
-        scene = scene_of(kind)
-        people = case_study_people(1 + (seed % 5 == 3) + 2 * (seed % 10 == 7))
-        simulation = SensorRadarSimulation(scene, people, seed=seed)
-        nodes = [_listening_node(simulation, which) for which in range(len(scene.nodes))]
-        first = 8 + 2 * seed % 40
-        scans = [simulation.frame(first + k).scans for k in range(PEOPLE_FRAMES + 1)]
-        heard = [[_hear(node, scan) for node, scan in zip(nodes, frame, strict=True)] for frame in scans]
-        ids = [node.node_id for node in scene.nodes]
-        yield HubInput(
-            where=f"seed {seed} ({kind}, {len(people)} people, frames from {first})",
-            base=hub_config_of(scene),
-            shared_transmitter=kind == "shared Tx",
-            instants=tuple(_disturbed(_sequence(ids, heard), seed)),
-        )
+        yield simulated_hub_input(seed, kind)
+        if kind != "shared Tx":
+            yield replace(simulated_hub_input(seed, "shared Tx"), stand_in=True)
+
+
+def simulated_hub_input(seed: int, kind: str) -> HubInput:
+    """Return what a hub hears of one seed at a site of one kind."""
+    scene = scene_of(kind)
+    people = case_study_people(1 + (seed % 5 == 3) + 2 * (seed % 10 == 7))
+    simulation = SensorRadarSimulation(scene, people, seed=seed)
+    nodes = [_listening_node(simulation, which) for which in range(len(scene.nodes))]
+    first = 8 + 2 * seed % 40
+    scans = [simulation.frame(first + k).scans for k in range(PEOPLE_FRAMES + 1)]
+    heard = [[_hear(node, scan) for node, scan in zip(nodes, frame, strict=True)] for frame in scans]
+    ids = [node.node_id for node in scene.nodes]
+    return HubInput(
+        where=f"seed {seed} ({kind}, {len(people)} people, frames from {first})",
+        base=hub_config_of(scene),
+        shared_transmitter=kind == "shared Tx",
+        instants=tuple(_disturbed(_sequence(ids, heard), seed)),
+    )
 
 
 def scene_of(kind: str) -> Scene:

@@ -41,9 +41,12 @@ def conform_hub(
     """Feed the same reports to target and reference under one choice."""
     for tap in hub_taps(choice):
         board.row(choice.name, tap)
-    for number, heard in enumerate(inputs):
-        if choice.shared_transmitter and not heard.shared_transmitter:
-            continue
+    fitting = [
+        heard
+        for heard in inputs
+        if (heard.shared_transmitter if choice.shared_transmitter else not heard.stand_in)
+    ]
+    for number, heard in enumerate(fitting):
         config = heard.config(choice)
         comparison = HubComparison(board, choice, config, target.hub(config))
         for index, instant in enumerate(heard.instants):
