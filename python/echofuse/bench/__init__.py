@@ -10,7 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from echofuse.bench.hub_cases import frame_case, hub_cases
+from echofuse.bench.frame_cases import frame_case
+from echofuse.bench.hub_cases import hub_cases
 from echofuse.bench.material import case_study
 from echofuse.bench.node_cases import node_cases
 from echofuse.bench.phd_scaling import MAX_EXPONENT, Growth, phd_growths

@@ -1,4 +1,4 @@
-"""The stages of a hub, each choice, the whole hub, and the whole frame: six nodes and their hub."""
+"""The stages of a hub, each choice, and the whole hub."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -20,7 +20,7 @@ from echofuse.bench.material import (
     back_and_forth,
     listening_node,
 )
-from echofuse.bench.node_cases import choices, listening_reference
+from echofuse.bench.node_cases import choices
 from echofuse.bench.timing import Case, Run, timed
 from echofuse.conformance.comparison import as_reference, to_float64
 from echofuse.conformance.hub_reference import hub_limits
@@ -65,25 +65,19 @@ def hub_cases(material: Material) -> Iterator[Case]:
     )
 
 
-def frame_case(material: Material) -> Case:
-    """All nodes process a scan each, and the hub what they report."""
-    return Case(
-        group="frame",
-        name="whole frame",
-        core=_core_frame(material),
-        reference=_reference_frame(material),
-        in_step=True,
-    )
-
-
 def reports_of(material: Material) -> list[Reports]:
     """What the library's nodes say, frame by frame."""
     nodes = [listening_node(heard) for heard in material.nodes]
     frames = []
     for index in range(FRAMES):
         said = [accept(n.process(h.scans[index], index)) for n, h in zip(nodes, material.nodes, strict=True)]
-        frames.append([(h.node_id, *_columns(rows)) for h, rows in zip(material.nodes, said, strict=True)])
+        frames.append([(h.node_id, *columns(rows)) for h, rows in zip(material.nodes, said, strict=True)])
     return frames
+
+
+def columns(rows: Any) -> tuple[Array, Array]:
+    """Delays [s] and weights of a report, as the hub takes them."""
+    return np.ascontiguousarray(rows["delay_s"], np.float32), np.ascontiguousarray(rows["weight"], np.float32)
 
 
 def configured_hub(config: Any) -> "_core.SensorRadarHub":
@@ -102,10 +96,6 @@ def warm_particles(config: Any, points: Array) -> Any:
         accept(phd.update(points))
         accept(phd.resample())
     return phd
-
-
-def _columns(rows: Any) -> tuple[Array, Array]:
-    return np.ascontiguousarray(rows["delay_s"], np.float32), np.ascontiguousarray(rows["weight"], np.float32)
 
 
 def _taps(config: Any, frames: Sequence[Reports]) -> dict[str, Array]:
@@ -307,40 +297,6 @@ def _reference_hub(material: Material, frames: Sequence[Reports]) -> Run:
         number = next(numbers)
         for node_id, delay_s, weight in plain[order()]:
             hub.receive(Report(node_id, number, delay_s, weight), number * FRAME_US)
-        return hub.poll(number * FRAME_US)
-
-    call()  # as the library did when it was accepted
-    return timed(call)
-
-
-def _core_frame(material: Material) -> Run:
-    nodes = [listening_node(heard) for heard in material.nodes]
-    hub, order, numbers = configured_hub(material.hub), back_and_forth(FRAMES), count()
-
-    def call() -> object:
-        number, index = next(numbers), order()
-        now_us = number * FRAME_US
-        for node, heard in zip(nodes, material.nodes, strict=True):
-            _, rows = node.process(heard.scans[index], now_us)
-            hub.receive(heard.node_id, number, *_columns(rows), now_us)
-        return hub.poll(now_us)
-
-    return timed(accepted(call))
-
-
-def _reference_frame(material: Material) -> Run:
-    nodes = [listening_reference(heard) for heard in material.nodes]
-    scans = [[to_float64(scan) for scan in heard.scans] for heard in material.nodes]
-    hub = SensorRadarHub(as_reference(material.hub), LIMITS)
-    order, numbers = back_and_forth(FRAMES), count()
-
-    def call() -> object:
-        number, index = next(numbers), order()
-        for node, heard, heard_scans in zip(nodes, material.nodes, scans, strict=True):
-            report = node.process(heard_scans[index])
-            assert report is not None
-            delay_s, weight = report.detections.T
-            hub.receive(Report(heard.node_id, number, delay_s, weight), number * FRAME_US)
         return hub.poll(number * FRAME_US)
 
     call()  # as the library did when it was accepted
