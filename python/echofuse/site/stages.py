@@ -73,7 +73,7 @@ PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarH
 def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], problems: Problems) -> None:
     """Report every setting that no configuration knows, of a wrong type, or with an impossible value.
 
-    A key is looked up in `configs` in order: first the node's, then the hub's, then a plan's. What is right is set on them.
+    A key is looked up in `configs` in order: the node's, the hub's, a plan's. What is right is set on them.
     """
     known = [field for config in configs for field in config.fields() if field not in MEASURED]
     own: list[dict[str, Any]] = [{} for _ in configs]
