@@ -1,1 +1,1 @@
-"""The specification: NumPy, float64, slow and obvious, from the equations. Never imports ``_core``."""
+"""The specification: NumPy, float64, slow and obvious, from the papers alone. Never imports ``_core``."""
