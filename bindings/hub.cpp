@@ -202,19 +202,8 @@ void bind_frame_assembler(py::module_& m) {
           py::arg("config"), py::arg("nodes"))
       .def("reset", &FrameAssembler::reset)
       .def_property_readonly("counters", &FrameAssembler::counters)
-      .def(
-          "receive",
-          [](FrameAssembler& self, std::int32_t node_id, std::uint32_t frame, const FloatArray& delay,
-             const FloatArray& weight, std::int64_t now_us) {
-            link::Detections report;
-            report.node_id = node_id;
-            report.frame = frame;
-            report.time_us = now_us;
-            fill_detections(report, delay, weight);
-            return self.receive(report, now_us);
-          },
-          py::arg("node_id"), py::arg("frame"), py::arg("delay_s").noconvert(), py::arg("weight").noconvert(),
-          py::arg("now_us"))
+      .def("receive", &receive_report<FrameAssembler>, py::arg("node_id"), py::arg("frame"),
+           py::arg("delay_s").noconvert(), py::arg("weight").noconvert(), py::arg("now_us"))
       .def(
           "poll",
           [](FrameAssembler& self, std::int64_t now_us) -> py::tuple {

@@ -18,4 +18,16 @@ inline void fill_detections(link::Detections& report, const FloatArray& delay, c
                             " detections");
 }
 
+/// One node's report, as it comes over the link, to whatever receives reports.
+template <class Receiver>
+Status receive_report(Receiver& self, std::int32_t node_id, std::uint32_t frame, const FloatArray& delay,
+                      const FloatArray& weight, std::int64_t now_us) {
+  link::Detections report;
+  report.node_id = node_id;
+  report.frame = frame;
+  report.time_us = now_us;
+  fill_detections(report, delay, weight);
+  return self.receive(report, now_us);
+}
+
 }  // namespace echofuse::bindings

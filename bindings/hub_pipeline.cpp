@@ -123,19 +123,9 @@ void bind_hub_pipeline(py::module_& m) {
       .def(py::init<>())
       .def("configure", &SensorRadarHub::configure, py::arg("config"))
       .def("reset", &SensorRadarHub::reset)
-      .def(
-          "receive",
-          [](SensorRadarHub& self, std::int32_t node_id, std::uint32_t frame, const FloatArray& delay,
-             const FloatArray& weight, std::int64_t now_us) {
-            link::Detections report;
-            report.node_id = node_id;
-            report.frame = frame;
-            report.time_us = now_us;
-            fill_detections(report, delay, weight);
-            return self.receive(report, now_us);
-          },
-          py::arg("node_id"), py::arg("frame"), py::arg("delay_s").noconvert(), py::arg("weight").noconvert(),
-          py::arg("now_us"), "One node's report; frame counts the node's scans.")
+      .def("receive", &receive_report<SensorRadarHub>, py::arg("node_id"), py::arg("frame"),
+           py::arg("delay_s").noconvert(), py::arg("weight").noconvert(), py::arg("now_us"),
+           "One node's report; frame counts the node's scans.")
       .def("poll", &poll, py::arg("now_us"),
            "(status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of "
            "Track.")

@@ -122,7 +122,7 @@ def bench(options: Namespace) -> int:
     if options.out:
         _make_folder(options.out)
         _write_json(options.out / "bench.json", table)
-    return 0
+    return 0 if table["passed"] else 1
 
 
 COMMANDS: dict[str, Callable[[Namespace], int]] = {

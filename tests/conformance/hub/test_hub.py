@@ -5,26 +5,13 @@ import pytest
 
 from echofuse import _core
 from echofuse.conformance.comparison import COIN_TOSS_MARGIN, Scoreboard, as_reference
-from echofuse.reference.hub.hub import HubLimits, SensorRadarHub
+from echofuse.conformance.hub_reference import hub_limits
+from echofuse.reference.hub.hub import SensorRadarHub
 from echofuse.reference.hub.locate.site import path_m
 from echofuse.reference.hub.measure.frame_assembler import SPEED_OF_LIGHT_MPS, Report
 
 PERIOD_US = 100_000
 N_FRAMES = 25
-
-
-def limits() -> HubLimits:
-    known = _core.LIMITS
-    return HubLimits(
-        max_tuples=known["max_tuples_per_frame"],
-        max_measurements=known["max_measurements_per_frame"],
-        max_candidates=known["max_measurements_per_frame"],
-        max_points=known["max_points_per_frame"],
-        max_particles=known["max_particles"],
-        max_newborn_particles=known["max_newborn_particles"],
-        max_targets=known["max_targets"],
-        max_tracks=known["max_tracks"],
-    )
 
 
 def configured(site, core_site, **fields):  # type: ignore[no-untyped-def]
@@ -36,7 +23,7 @@ def configured(site, core_site, **fields):  # type: ignore[no-untyped-def]
     assert config.invalid_field() is None
     hub = _core.SensorRadarHub()
     assert hub.configure(config) == _core.Status.ok
-    return hub, SensorRadarHub(as_reference(config), limits()), nodes
+    return hub, SensorRadarHub(as_reference(config), hub_limits(_core.LIMITS)), nodes
 
 
 def reports(rng, site, k):  # type: ignore[no-untyped-def]

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/limits.hpp"
 #include "echofuse/estimation/assignment.hpp"
-#include "echofuse/estimation/compensated_sum.hpp"
 #include "echofuse/estimation/gaussian.hpp"
 #include "echofuse/estimation/kalman.hpp"
 #include "echofuse/estimation/mixture_em.hpp"

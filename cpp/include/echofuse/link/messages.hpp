@@ -16,8 +16,8 @@ struct Detection {
 /// A node's report on one scan.
 struct Detections {
   std::int32_t node_id = 0;
-  std::uint32_t frame = 0;   ///< counts the node's scans
-  std::int64_t time_us = 0;  ///< [us] of the scan, the node's clock
+  std::uint32_t frame = 0;                                     ///< counts the node's scans
+  std::int64_t time_us = 0;                                    ///< [us] of the scan, the node's clock
   BoundedVector<Detection, kMaxDetectionsPerNode> detections;  ///< heaviest kept, ascending delay
 };
 
@@ -29,18 +29,18 @@ enum class TrackState : std::uint8_t {
 };
 
 struct Track {
-  std::int32_t id;                      ///< unique while the hub runs, ascending by birth
+  std::int32_t id;  ///< unique while the hub runs, ascending by birth
   TrackState state;
-  std::int32_t frames_since_update;     ///< 0 when updated in this frame
-  float x_m, y_m;                       ///< [m] position
-  float vx_mps, vy_mps;                 ///< [m/s] velocity
+  std::int32_t frames_since_update;                            ///< 0 when updated in this frame
+  float x_m, y_m;                                              ///< [m] position
+  float vx_mps, vy_mps;                                        ///< [m/s] velocity
   float covariance_xx_m2, covariance_xy_m2, covariance_yy_m2;  ///< [m^2] of the position
 };
 
 /// What the hub says after a frame.
 struct Tracks {
-  std::int64_t time_us = 0;  ///< [us] of the frame, the hub's clock
-  std::uint32_t frame = 0;   ///< counts the hub's frames
+  std::int64_t time_us = 0;                 ///< [us] of the frame, the hub's clock
+  std::uint32_t frame = 0;                  ///< counts the hub's frames
   BoundedVector<Track, kMaxTracks> tracks;  ///< ascending id; no dead ones
 };
 

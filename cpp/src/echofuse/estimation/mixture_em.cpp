@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/constants.hpp"
-#include "echofuse/estimation/compensated_sum.hpp"
 #include "echofuse/estimation/gaussian.hpp"
 
 namespace echofuse::estimation {

@@ -1,6 +1,6 @@
 #include "echofuse/estimation/particle_set.hpp"
 
-#include "echofuse/estimation/compensated_sum.hpp"
+#include "echofuse/core/compensated_sum.hpp"
 
 namespace echofuse::estimation {
 

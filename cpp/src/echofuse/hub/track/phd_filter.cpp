@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/constants.hpp"
-#include "echofuse/estimation/compensated_sum.hpp"
 #include "echofuse/estimation/gaussian.hpp"
 #include "echofuse/estimation/resampling.hpp"
 
 namespace echofuse::hub {
 namespace {
 
-using estimation::CompensatedSum;
 using estimation::Particle;
 using estimation::Position;
 

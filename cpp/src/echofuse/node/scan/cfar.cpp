@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/limits.hpp"
+#include "echofuse/node/scan/sliding_sum.hpp"
 #include "echofuse/node/scan/sorted_window.hpp"
-#include "echofuse/node/scan/sums.hpp"
 
 namespace echofuse::node {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/limits.hpp"
-#include "echofuse/node/scan/sums.hpp"
 
 namespace echofuse::node {
 namespace {

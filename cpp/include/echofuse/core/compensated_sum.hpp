@@ -1,6 +1,6 @@
 #pragma once
 
-namespace echofuse::estimation {
+namespace echofuse {
 
 /// Sum in float32 that keeps what rounding loses (Kahan, Communications of the ACM 8, 1965): its error does
 /// not grow with the number of terms.
@@ -19,4 +19,4 @@ class CompensatedSum {
   float lost_ = 0.0f;
 };
 
-}  // namespace echofuse::estimation
+}  // namespace echofuse

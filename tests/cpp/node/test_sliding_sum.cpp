@@ -1,4 +1,5 @@
-#include "echofuse/node/scan/sums.hpp"
+#include "echofuse/core/compensated_sum.hpp"
+#include "echofuse/node/scan/sliding_sum.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +9,8 @@
 #include "echofuse/core/random.hpp"
 #include "echofuse/node/scan/sorted_window.hpp"
 
+using echofuse::CompensatedSum;
 using echofuse::Pcg32;
-using echofuse::node::CompensatedSum;
 using echofuse::node::SlidingSum;
 using echofuse::node::SortedWindow;
 

@@ -7,22 +7,6 @@
 
 namespace echofuse::node {
 
-/// Sum of many floats that loses nothing to rounding (Kahan 1965).
-class CompensatedSum {
- public:
-  void add(float value) {
-    const float corrected = value - lost_;
-    const float sum = sum_ + corrected;
-    lost_ = (sum - sum_) - corrected;
-    sum_ = sum;
-  }
-  float value() const { return sum_; }
-
- private:
-  float sum_ = 0.0f;
-  float lost_ = 0.0f;
-};
-
 /// Sum of the last `window` values, by additions alone: a running sum from which old values are subtracted
 /// would keep the rounding error of a loud one after it has left. Two additions a value: the values fill one
 /// block after the other, and the window is the end of the last block and the begin of this one.
