@@ -15,8 +15,8 @@ from echofuse import _core
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
 from echofuse.metrics import measure
-from echofuse.recording import NodeRecording, Recording
-from echofuse.result import DETECTION_DTYPE, POINT_DTYPE, TRACK_DTYPE, NodeStack, RunResult
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, NodeRecording, Recording
+from echofuse.result import POINT_DTYPE, NodeStack, RunResult
 from echofuse.site import Site, SiteNode, apply_settings
 
 SPEED_OF_LIGHT_MPS = 299_792_458.0

@@ -6,34 +6,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from echofuse.recording import Outputs, Recording, frame_digest
+
 if TYPE_CHECKING:
-    from echofuse.recording import Outputs, Recording
     from echofuse.site import Site
 
-#: One row a detection: what a node reported. `node` indexes `Recording.nodes`.
-DETECTION_DTYPE = np.dtype(
-    [("frame", "i4"), ("node", "i4"), ("time_us", "i8"), ("delay_s", "f4"), ("weight", "f4")]
-)
 #: One row a point that the tracker was given. [m]
 POINT_DTYPE = np.dtype(
     [("frame", "i4"), ("time_us", "i8"), ("x_m", "f4"), ("y_m", "f4"), ("members", "f4"), ("weight", "f4")]
-)
-#: One row a living track and frame. `state`: 0 unconfirmed, 1 confirmed, 2 silent.
-TRACK_DTYPE = np.dtype(
-    [
-        ("frame", "i4"),
-        ("time_us", "i8"),
-        ("id", "i4"),
-        ("state", "u1"),
-        ("frames_since_update", "i4"),
-        ("x_m", "f4"),
-        ("y_m", "f4"),
-        ("vx_mps", "f4"),
-        ("vy_mps", "f4"),
-        ("covariance_xx_m2", "f4"),
-        ("covariance_xy_m2", "f4"),
-        ("covariance_yy_m2", "f4"),
-    ]
 )
 
 
@@ -43,9 +23,7 @@ class NodeStack:
 
     residual: NDArray[np.float32]  # (n_scans, n_samples) rectified amplitude after clutter removal [count]
     decisions: NDArray[np.uint8]  # (n_scans, n_samples) detector output
-    clusters: list[
-        NDArray[np.float32]
-    ]  # per scan (n_clusters, 4) position [sample], weight, first, last sample
+    clusters: list[NDArray[np.float32]]  # per scan (n_clusters, 4), as the tap range_clusters
     delay_s: NDArray[np.float64]  # (n_samples,) propagation delay Tx -> person -> Rx of each sample [s]
 
 
@@ -54,7 +32,7 @@ class RunResult:
     """Everything that one run said, frame by frame."""
 
     site: "Site"
-    recording: "Recording"
+    recording: Recording
     frame_time_us: NDArray[np.int64]  # (n_frames,) hub clock [us]
     detections: NDArray[np.void]  # DETECTION_DTYPE
     points: NDArray[np.void]  # POINT_DTYPE
@@ -69,10 +47,8 @@ class RunResult:
         default_factory=dict
     )  # node name -> tap name -> values
 
-    def outputs(self) -> "Outputs":
+    def outputs(self) -> Outputs:
         """Return what a recording keeps of this run, each frame with its hash."""
-        from echofuse.recording import Outputs, frame_digest
-
         frames = np.arange(len(self.frame_time_us) + 1)
         starts = [np.searchsorted(table["frame"], frames) for table in (self.detections, self.tracks)]
         digests = [

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from echofuse.recording import NodeRecording, PersonTruth, Recording
-from echofuse.result import DETECTION_DTYPE, POINT_DTYPE, TRACK_DTYPE, NodeStack, RunResult
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, NodeRecording, PersonTruth, Recording
+from echofuse.result import POINT_DTYPE, NodeStack, RunResult
 from echofuse.site import Site, SiteNode
 
 SPEED_OF_LIGHT_MPS = 299_792_458.0

@@ -11,7 +11,8 @@ from echofuse.display.errors import localisation_errors, people_counted, people_
 from echofuse.display.stack_figure import shrink_by_maximum
 from echofuse.display.tracks import CONFIRMED, SILENT, shown, stretches
 from echofuse.evaluation.tracking import error_quantile_m, evaluate_tracks
-from echofuse.result import TRACK_DTYPE, RunResult
+from echofuse.recording import TRACK_DTYPE
+from echofuse.result import RunResult
 from echofuse.site import TruePath
 
 

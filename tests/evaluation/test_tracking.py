@@ -10,8 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from echofuse.evaluation.path import distance_to_path_m, evaluate_path
 from echofuse.evaluation.tracking import empirical_cdf, error_quantile_m, evaluate_tracks
-from echofuse.recording import PersonTruth
-from echofuse.result import TRACK_DTYPE
+from echofuse.recording import TRACK_DTYPE, PersonTruth
 
 UNCONFIRMED, CONFIRMED, SILENT = 0, 1, 2
 TIME_S = 0.1 * np.arange(31)  # frames 10 to 30 are evaluated: 21 of them

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from echofuse.errors import InputError
-from echofuse.recording import PersonTruth, RecordingWriter, read
-from echofuse.result import DETECTION_DTYPE, TRACK_DTYPE
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, PersonTruth, RecordingWriter, read
 
 
 @pytest.fixture

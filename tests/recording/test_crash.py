@@ -15,7 +15,7 @@ WRITER = """
 import sys
 import numpy as np
 from echofuse.recording import RecordingWriter
-from echofuse.result import DETECTION_DTYPE, TRACK_DTYPE
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE
 
 writer = RecordingWriter(sys.argv[1], pipeline="sensor_radar", site_toml="x = 1")
 for node in range(3):

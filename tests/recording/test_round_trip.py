@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from echofuse.errors import InputError
 from echofuse.recording import (
+    DETECTION_DTYPE,
+    TRACK_DTYPE,
     NodeRecording,
     PersonTruth,
     Recording,
@@ -19,7 +21,6 @@ from echofuse.recording import (
     read,
     write,
 )
-from echofuse.result import DETECTION_DTYPE, TRACK_DTYPE
 
 
 def node(

@@ -31,7 +31,7 @@ class PathMetrics:
 def evaluate_path(
     tracks: NDArray[np.void], n_frames: int, path_m: ArrayLike, *, walking: tuple[int, int]
 ) -> PathMetrics:
-    """Return the metrics of tracks (n,) [result.TRACK_DTYPE] against a polyline path_m (n_vertices, 2).
+    """Return the metrics of tracks (n,) [recording.TRACK_DTYPE] against a polyline path_m (n_vertices, 2).
 
     walking: first and last frame of the walk; in the frames after it the person stands still where the
     confirmed track was last (or, if there was none, at the end of the path).

@@ -76,7 +76,7 @@ def evaluate_tracks(
     settle_s: float = 1.0,
     bound_m: ArrayLike | None = None,
 ) -> TrackingMetrics:
-    """Return the metrics of tracks (n,) [result.TRACK_DTYPE] against the truth.
+    """Return the metrics of tracks (n,) [recording.TRACK_DTYPE] against the truth.
 
     frame_time_s: (n_frames,) on the clock of the truth; frame f of the tracks is its element f.
     bound_m: position error bound, a number or (n_frames, n_people), for the ratio.

@@ -1,10 +1,20 @@
 """One HDF5 layout in and out (`design.md` section 7), and importers of other people's recordings."""
 
-from echofuse.recording.model import NodeRecording, Outputs, PersonTruth, Pulse, Recording
+from echofuse.recording.model import (
+    DETECTION_DTYPE,
+    TRACK_DTYPE,
+    NodeRecording,
+    Outputs,
+    PersonTruth,
+    Pulse,
+    Recording,
+)
 from echofuse.recording.reader import read
 from echofuse.recording.writer import RecordingWriter, frame_digest, write
 
 __all__ = [
+    "DETECTION_DTYPE",
+    "TRACK_DTYPE",
     "NodeRecording",
     "Outputs",
     "PersonTruth",

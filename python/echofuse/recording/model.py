@@ -9,6 +9,28 @@ from numpy.typing import NDArray
 FORMAT: Final = "echofuse-recording"
 VERSION: Final = 1
 
+#: One row a detection: what a node reported. `node` indexes `Recording.nodes`.
+DETECTION_DTYPE = np.dtype(
+    [("frame", "i4"), ("node", "i4"), ("time_us", "i8"), ("delay_s", "f4"), ("weight", "f4")]
+)
+#: One row a living track and frame. `state`: 0 unconfirmed, 1 confirmed, 2 silent.
+TRACK_DTYPE = np.dtype(
+    [
+        ("frame", "i4"),
+        ("time_us", "i8"),
+        ("id", "i4"),
+        ("state", "u1"),
+        ("frames_since_update", "i4"),
+        ("x_m", "f4"),
+        ("y_m", "f4"),
+        ("vx_mps", "f4"),
+        ("vy_mps", "f4"),
+        ("covariance_xx_m2", "f4"),
+        ("covariance_xy_m2", "f4"),
+        ("covariance_yy_m2", "f4"),
+    ]
+)
+
 #: Scans are kept in the type in which the radar delivers them. [count]
 Scans = NDArray[np.float32] | NDArray[np.int32]
 
@@ -56,8 +78,8 @@ class Outputs:
     target: str  # what it ran on
     frame_time_us: NDArray[np.int64]  # (n_frames,) hub clock [us]
     frame_hash: NDArray[np.uint8]  # (n_frames, 32) see `frame_digest`
-    detections: NDArray[np.void]  # (n,) result.DETECTION_DTYPE, ascending frame
-    tracks: NDArray[np.void]  # (n,) result.TRACK_DTYPE, ascending frame
+    detections: NDArray[np.void]  # (n,) DETECTION_DTYPE, ascending frame
+    tracks: NDArray[np.void]  # (n,) TRACK_DTYPE, ascending frame
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from echofuse.errors import InputError, problem
 from echofuse.recording.model import (
+    DETECTION_DTYPE,
     FORMAT,
+    TRACK_DTYPE,
     VERSION,
     NodeRecording,
     Outputs,
@@ -20,7 +22,6 @@ from echofuse.recording.model import (
     Recording,
     Scans,
 )
-from echofuse.result import DETECTION_DTYPE, TRACK_DTYPE
 
 __all__ = ["read"]
 

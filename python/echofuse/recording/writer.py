@@ -13,8 +13,16 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from echofuse.errors import InputError, problem
 from echofuse.recording.growing_table import GrowingTable
-from echofuse.recording.model import FORMAT, VERSION, NodeRecording, PersonTruth, Pulse, Recording
-from echofuse.result import DETECTION_DTYPE, TRACK_DTYPE
+from echofuse.recording.model import (
+    DETECTION_DTYPE,
+    FORMAT,
+    TRACK_DTYPE,
+    VERSION,
+    NodeRecording,
+    PersonTruth,
+    Pulse,
+    Recording,
+)
 
 __all__ = ["PULSE_DTYPE", "RecordingWriter", "frame_digest", "write"]
 
