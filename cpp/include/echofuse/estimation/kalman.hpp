@@ -31,6 +31,13 @@ class ConstantVelocityFilter {
   /// [1] squared Mahalanobis distance of a measured position from the predicted one.
   float squared_distance(const Position& measured, const Covariance2& measurement_covariance) const;
 
+  /// [m^2] variance of direction . position.
+  float variance_along(const Eigen::Vector2f& direction) const;
+
+  /// Takes in one number that grows by direction . change of position: innovation is its measured minus its
+  /// predicted value, variance_m2 > 0 that of its error (an extended Kalman filter's scalar update).
+  void update_along(const Eigen::Vector2f& direction, float innovation_m, float variance_m2);
+
   const State& state() const { return state_; }
   const Covariance& covariance() const { return covariance_; }
   Position position() const { return {state_(0), state_(2)}; }

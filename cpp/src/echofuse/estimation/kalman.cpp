@@ -58,4 +58,20 @@ float ConstantVelocityFilter::squared_distance(const Position& measured,
   return innovation.dot(inverse * innovation);
 }
 
+float ConstantVelocityFilter::variance_along(const Eigen::Vector2f& direction) const {
+  const State shown(direction(0), 0.0f, direction(1), 0.0f);
+  return shown.dot(covariance_ * shown);
+}
+
+void ConstantVelocityFilter::update_along(const Eigen::Vector2f& direction, float innovation_m,
+                                          float variance_m2) {
+  const State shown(direction(0), 0.0f, direction(1), 0.0f);
+  const State with_shown = covariance_ * shown;
+  const State gain = with_shown / (shown.dot(with_shown) + variance_m2);
+  const Covariance rest = Covariance::Identity() - gain * shown.transpose();
+  state_ += gain * innovation_m;
+  const Covariance updated = rest * covariance_ * rest.transpose() + variance_m2 * gain * gain.transpose();
+  covariance_ = 0.5f * (updated + updated.transpose());
+}
+
 }  // namespace echofuse::estimation
