@@ -74,6 +74,8 @@ void bind_clutter(py::module_& m) {
   py::enum_<ClutterMethod>(m, "ClutterMethod", "What is taken as background.")
       .value("empty_room_envelope", ClutterMethod::kEmptyRoomEnvelope, "envelope less the empty room's")
       .value("empty_room_scan", ClutterMethod::kEmptyRoomScan, "scan less the empty room's")
+      .value("empty_room_shadowed", ClutterMethod::kEmptyRoomShadowed,
+             "scan less what people's shadows leave of the empty room's")
       .value("exponential_average", ClutterMethod::kExponentialAverage, "scan less its mean so far")
       .value("frame_difference", ClutterMethod::kFrameDifference, "scan less an earlier scan");
   ConfigBinder<ClutterConfig>(m, "ClutterConfig", "Removal of what stands still.")
@@ -81,7 +83,8 @@ void bind_clutter(py::module_& m) {
       .field("averaging_factor", &ClutterConfig::averaging_factor, "weight of the past, in (0, 1)")
       .field("learning_scans", &ClutterConfig::learning_scans, "scans that make a background, >= 1")
       .field("difference_lag_scans", &ClutterConfig::difference_lag_scans,
-             "frame difference: how much earlier");
+             "frame difference: how much earlier")
+      .field("shadow_window_samples", &ClutterConfig::shadow_window_samples, "odd, 3 to 127");
   py::class_<ClutterFilter>(m, "ClutterFilter", "Difference from a background.")
       .def(py::init<>())
       .def("configure", &ClutterFilter::configure, py::arg("config"), py::arg("n_samples"))

@@ -16,6 +16,7 @@ inline constexpr std::size_t kMaxClutterMemory = 3 * kMaxSamplesPerScan;
 enum class ClutterMethod : std::uint8_t {
   kEmptyRoomEnvelope,   ///< envelope - envelope of the empty room, equation (13)
   kEmptyRoomScan,       ///< scan - scan of the empty room, before the envelope
+  kEmptyRoomShadowed,   ///< the same, where the empty room may have been weakened by people's shadows
   kExponentialAverage,  ///< scan - its exponentially weighted mean so far
   kFrameDifference,     ///< scan - an earlier scan
 };
@@ -25,6 +26,7 @@ struct ClutterConfig {
   float averaging_factor = 0.95f;  ///< weight of the past in the exponential average, in (0, 1)
   int learning_scans = 20;         ///< scans averaged into a background that nobody gave, >= 1
   int difference_lag_scans = 1;    ///< frame difference: how much earlier, >= 1
+  int shadow_window_samples = 31;  ///< [sample] kEmptyRoomShadowed: a shadow is alike so long, odd, 3 to 127
 };
 
 const char* invalid_field(const ClutterConfig& config);
@@ -34,6 +36,10 @@ bool uses_envelope(ClutterMethod method);
 
 /// Removes what stands still (sensor-radar paper, Sec. IV-D). The background is the mean of empty-room scans,
 /// or, where there are none, of the first learning_scans. The exponential average starts as a plain mean.
+/// kEmptyRoomShadowed subtracts what of the background is still there: around each sample, the scan is fitted
+/// by the background times a complex gain of at most 1 (the background and its slope, which is its quadrature,
+/// as a band-pass signal's slope is). A person in front of a wall weakens its echo; subtracted whole, the
+/// wall's echo would appear as a second person.
 /// Reference: python/echofuse/reference/node/scan/clutter.py
 class ClutterFilter {
  public:
@@ -55,6 +61,8 @@ class ClutterFilter {
 
  private:
   void learn(Span<const float> samples, float weight);
+  void subtract_shadowed(Span<const float> samples, Span<float> residual) const;
+  float slope(std::size_t k) const;
   void difference(Span<const float> samples, Span<float> residual, bool subtract);
 
   ClutterConfig config_;

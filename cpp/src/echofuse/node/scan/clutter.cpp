@@ -1,14 +1,25 @@
 #include "echofuse/node/scan/clutter.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "echofuse/node/scan/sliding_sum.hpp"
 
 namespace echofuse::node {
+namespace {
+
+constexpr std::size_t kMaxShadowWindow = 127;
+
+}  // namespace
 
 const char* invalid_field(const ClutterConfig& config) {
   if (config.method > ClutterMethod::kFrameDifference) return "method";
   if (!(config.averaging_factor > 0.0f && config.averaging_factor < 1.0f)) return "averaging_factor";
   if (config.learning_scans < 1) return "learning_scans";
   if (config.difference_lag_scans < 1) return "difference_lag_scans";
+  const int window = config.shadow_window_samples;
+  if (window < 3 || window > static_cast<int>(kMaxShadowWindow) || window % 2 == 0)
+    return "shadow_window_samples";
   return nullptr;
 }
 
@@ -60,6 +71,10 @@ Status ClutterFilter::process(Span<const float> samples, Span<float> residual) {
   }
   const bool follows = config_.method == ClutterMethod::kExponentialAverage;
   const bool learns = follows || !was_ready;
+  if (config_.method == ClutterMethod::kEmptyRoomShadowed && was_ready) {
+    subtract_shadowed(samples, residual);
+    return Status::kOk;
+  }
   const float mean_weight = 1.0f / static_cast<float>(n_averaged_ + 1);
   float weight = 0.0f;
   if (learns) {
@@ -76,6 +91,40 @@ Status ClutterFilter::process(Span<const float> samples, Span<float> residual) {
 
 void ClutterFilter::learn(Span<const float> samples, float weight) {
   for (std::size_t k = 0; k < n_samples_; ++k) memory_[k] += weight * (samples[k] - memory_[k]);
+}
+
+/// Background at the next less at the previous sample.
+float ClutterFilter::slope(std::size_t k) const {
+  const float next = k + 1 < n_samples_ ? memory_[k + 1] : 0.0f;
+  return next - (k > 0 ? memory_[k - 1] : 0.0f);
+}
+
+/// residual = samples - gain * background - turned * slope, both gains those that fit best in the window
+/// around the sample, then shrunk until together they weaken the background. samples may be residual.
+void ClutterFilter::subtract_shadowed(Span<const float> samples, Span<float> residual) const {
+  const auto window = static_cast<std::size_t>(config_.shadow_window_samples);
+  using Sum = SlidingSum<kMaxShadowWindow>;
+  Sum background_power(window), slope_power(window), along(window), across(window);
+  const std::size_t ahead = window / 2;
+  for (std::size_t k = 0; k < n_samples_ + ahead; ++k) {
+    const bool inside = k < n_samples_;
+    const float sample = inside ? samples[k] : 0.0f;
+    const float background = inside ? memory_[k] : 0.0f;
+    const float turned = inside ? slope(k) : 0.0f;
+    background_power.push(background * background);
+    slope_power.push(turned * turned);
+    along.push(sample * background);
+    across.push(sample * turned);
+    if (k < ahead) continue;
+    const std::size_t centre = k - ahead;
+    residual[centre] = samples[centre];
+    if (!(background_power.value() > 0.0f && slope_power.value() > 0.0f)) continue;
+    const float gain = along.value() / background_power.value();
+    const float turn = across.value() / slope_power.value();
+    const float squared = gain * gain + turn * turn * slope_power.value() / background_power.value();
+    const float shrink = squared > 1.0f ? 1.0f / std::sqrt(squared) : 1.0f;
+    residual[centre] -= shrink * (gain * memory_[centre] + turn * slope(centre));
+  }
 }
 
 /// memory_ is a ring of difference_lag_scans scans; the new one takes the oldest one's place.
