@@ -105,6 +105,13 @@ class SensorRadar:
             _configured_node(site, places[source.node_id], source) if source.node_id in places else None
             for source in sources
         ]
+        # A report's number counts scans; several pulses may make one.
+        self._pulses = [
+            node_config(site, places[source.node_id], source).pulse_integrator.pulses_per_scan
+            if source.node_id in places
+            else 1
+            for source in sources
+        ]
         config = hub_config(site)
         self.hub = _core.SensorRadarHub()
         if self.hub.configure(config) != _core.Status.ok:
@@ -126,7 +133,8 @@ class SensorRadar:
         else:
             status, detections = node.process(values, scan.time_us)
         if status != _core.Status.invalid_input and node.report_ready():
-            self._report(source.node_id, scan.index, detections, scan.time_us)
+            number = scan.index // self._pulses[scan.node]
+            self._report(source.node_id, number, detections, scan.time_us)
         return NodeOutput(detections=detections, taps=tapped)
 
     def frames(self, now_us: int) -> Iterator[FrameOutput]:

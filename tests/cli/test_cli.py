@@ -88,6 +88,19 @@ def test_bad_samples_cost_their_scans_and_nothing_else(run_folder: Path, tmp_pat
     assert json.loads((tmp_path / "metrics.json").read_text())["tracked_fraction"] > 0.95
 
 
+def test_several_pulses_make_one_frame(run_folder: Path, tmp_path: Path) -> None:
+    site = tmp_path / "pulses.toml"
+    site.write_text(
+        example_site("sensor_radar").to_toml() + "\n[pipeline.pulse_integrator]\npulses_per_scan = 2\n"
+    )
+    recording = str(run_folder / "recording.h5")
+    assert main(["process", recording, "--site", str(site), "--no-report", "--out", str(tmp_path)]) == 0
+    counters = json.loads((tmp_path / "counters.json").read_text())["hub"]
+    assert counters["frames"] == 30  # of 61 pulses; the last one waits for its second
+    assert counters["accepted"] == 6 * 30
+    assert counters["lost"] == counters["late"] == counters["early"] == counters["resynchronised"] == 0
+
+
 def test_other_geometry_rate_and_number_of_nodes_need_a_site_file_alone(tmp_path: Path) -> None:
     """Four nodes with their own transmitters around another room, scans resampled to 12 GHz."""
     corners = [(0.0, 0.0), (7.0, 0.0), (7.0, 5.0), (0.0, 5.0)]
