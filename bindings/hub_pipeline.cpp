@@ -88,7 +88,8 @@ void set_nodes(SensorRadarHubConfig& config, const std::vector<std::int32_t>& id
 void bind_config(py::module_& m) {
   py::enum_<hub::Tracker>(m, "Tracker")
       .value("phd", hub::Tracker::kPhd)
-      .value("kalman", hub::Tracker::kKalman);
+      .value("kalman", hub::Tracker::kKalman)
+      .value("range", hub::Tracker::kRange);
   ConfigBinder<SensorRadarHubConfig>(m, "SensorRadarHubConfig", "The hub of the pipeline sensor_radar.")
       .field("nodes", &SensorRadarHubConfig::nodes, "the first n_nodes")
       .field("n_nodes", &SensorRadarHubConfig::n_nodes, "at least 3")
@@ -104,6 +105,7 @@ void bind_config(py::module_& m) {
       .field("phd", &SensorRadarHubConfig::phd)
       .field("em", &SensorRadarHubConfig::em)
       .field("tracks", &SensorRadarHubConfig::tracks)
+      .field("ranges", &SensorRadarHubConfig::ranges)
       .type()
       .def("set_nodes", &set_nodes, py::arg("node_ids"), py::arg("tx_m").noconvert(),
            py::arg("rx_m").noconvert(), "Sets nodes and n_nodes from positions (n, 2) [m].")

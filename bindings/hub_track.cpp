@@ -2,6 +2,7 @@
 #include "echofuse/hub/track/kalman_tracker.hpp"
 #include "echofuse/hub/track/phd_filter.hpp"
 #include "echofuse/hub/track/phd_tracker.hpp"
+#include "echofuse/hub/track/range_tracker.hpp"
 #include "echofuse/hub/track/track_manager.hpp"
 #include "particles.hpp"
 #include "tracks.hpp"
@@ -176,12 +177,75 @@ void bind_trackers(py::module_& m) {
                              [](const KalmanTracker& self) { return self.manager().dropped_births(); });
 }
 
+void bind_range_tracker(py::module_& m) {
+  using hub::RangeTracker;
+  using hub::RangeTrackerConfig;
+  ConfigBinder<RangeTrackerConfig>(m, "RangeTrackerConfig", "Tracks from the nodes' paths; scores are logs.")
+      .field("detection_probability", &RangeTrackerConfig::detection_probability, "of a node, per scan")
+      .field("path_std_m", &RangeTrackerConfig::path_std_m, "[m]")
+      .field("clutter_ahead_per_m", &RangeTrackerConfig::clutter_ahead_per_m, "[1/m] behind no detection")
+      .field("clutter_body_per_m", &RangeTrackerConfig::clutter_body_per_m, "[1/m] to 1 m behind one")
+      .field("clutter_echo_per_m", &RangeTrackerConfig::clutter_echo_per_m, "[1/m] to 2.5 m")
+      .field("clutter_far_per_m", &RangeTrackerConfig::clutter_far_per_m, "[1/m] to 8 m")
+      .field("blind_path_m", &RangeTrackerConfig::blind_path_m, "[m] behind the direct path")
+      .field("gate_m", &RangeTrackerConfig::gate_m, "[m] narrowest")
+      .field("gate_max_m", &RangeTrackerConfig::gate_max_m, "[m] widest")
+      .field("echo_tail_m", &RangeTrackerConfig::echo_tail_m, "[m]")
+      .field("acceleration_density_m2ps3", &RangeTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
+      .field("newborn_position_std_m", &RangeTrackerConfig::newborn_position_std_m, "[m] per coordinate")
+      .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps, "[m/s] per coordinate")
+      .field("max_speed_mps", &RangeTrackerConfig::max_speed_mps, "[m/s] of an unconfirmed track")
+      .field("birth_step_m", &RangeTrackerConfig::birth_step_m, "[m] of the grid")
+      .field("birth_score", &RangeTrackerConfig::birth_score, "least")
+      .field("max_births", &RangeTrackerConfig::max_births, "per frame")
+      .field("birth_exclusion_m", &RangeTrackerConfig::birth_exclusion_m, "[m]")
+      .field("merge_distance_m", &RangeTrackerConfig::merge_distance_m, "[m]")
+      .field("unconfirmed_memory", &RangeTrackerConfig::unconfirmed_memory, "of a score, per frame")
+      .field("confirmed_memory", &RangeTrackerConfig::confirmed_memory, "of a score, per frame")
+      .field("confirm_score", &RangeTrackerConfig::confirm_score, "least")
+      .field("confirm_frames", &RangeTrackerConfig::confirm_frames, "least age")
+      .field("confirm_nodes", &RangeTrackerConfig::confirm_nodes, "with a detection of its own")
+      .field("confirmed_bonus", &RangeTrackerConfig::confirmed_bonus, "lead when detections are claimed")
+      .field("shared_score", &RangeTrackerConfig::shared_score, "of a node whose detection is another's")
+      .field("max_score", &RangeTrackerConfig::max_score)
+      .field("drop_score", &RangeTrackerConfig::drop_score, "an unconfirmed track below dies")
+      .field("end_score", &RangeTrackerConfig::end_score, "a confirmed track below dies")
+      .field("silent_nodes", &RangeTrackerConfig::silent_nodes, "fewer with a detection: silent");
+  py::class_<RangeTracker>(m, "RangeTracker", "Tracks people by the nodes' paths themselves.")
+      .def(py::init<>())
+      .def(
+          "configure",
+          [](RangeTracker& self, const RangeTrackerConfig& config, float body_radius_m,
+             const std::vector<hub::NodeSite>& nodes, const hub::Area& area) {
+            return self.configure(config, body_radius_m, {nodes.data(), nodes.size()}, area);
+          },
+          py::arg("config"), py::arg("body_radius_m"), py::arg("nodes"), py::arg("area"))
+      .def("reset", &RangeTracker::reset)
+      .def(
+          "process",
+          [](RangeTracker& self, const ArrayOf<int>& node_index, const FloatArray& path, float dt_s) {
+            const auto nodes = as_span(node_index, "node_index");
+            const auto paths = as_span(path, "path_m");
+            if (nodes.size() != paths.size())
+              throw py::value_error("node_index and path_m must have the same length");
+            std::vector<hub::FrameDetection> detections;
+            for (std::size_t i = 0; i < nodes.size(); ++i) detections.push_back({nodes[i], paths[i], 1.0f});
+            link::Tracks tracks;
+            const Status status = self.process({detections.data(), detections.size()}, dt_s, tracks);
+            return py::make_tuple(status, to_array(tracks));
+          },
+          py::arg("node_index").noconvert(), py::arg("path_m").noconvert(), py::arg("dt_s"),
+          "(status, structured array of Track) of detections by ascending node, then path (n,).")
+      .def_property_readonly("dropped_births", &RangeTracker::dropped_births);
+}
+
 }  // namespace
 
 void bind_hub_track(py::module_& m) {
   bind_phd_filter(m);
   bind_track_manager(m);
   bind_trackers(m);
+  bind_range_tracker(m);
 }
 
 }  // namespace echofuse::bindings

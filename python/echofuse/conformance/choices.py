@@ -56,7 +56,9 @@ NODE_CHOICES: tuple[Choice, ...] = (
     *_one("envelope.method", "square_low_pass"),
     *_one("direct_path.search", "threshold_crossing", "jump_back_search_forward"),
     *_one("alignment.method", "integer", "none"),
-    *_one("clutter.method", "empty_room_scan", "exponential_average", "frame_difference"),
+    *_one(
+        "clutter.method", "empty_room_scan", "empty_room_shadowed", "exponential_average", "frame_difference"
+    ),
     *_one(
         "clutter.method",
         "empty_room_envelope",

@@ -83,7 +83,14 @@ def test_direct_path(search: str) -> None:
 @pytest.mark.parametrize("empty_room_scans", [0, 1, 5])
 @pytest.mark.parametrize("lag", [1, 3])
 @pytest.mark.parametrize(
-    "method", ["empty_room_envelope", "empty_room_scan", "exponential_average", "frame_difference"]
+    "method",
+    [
+        "empty_room_envelope",
+        "empty_room_scan",
+        "empty_room_shadowed",
+        "exponential_average",
+        "frame_difference",
+    ],
 )
 def test_clutter(method: str, lag: int, empty_room_scans: int) -> None:
     config = _core.ClutterConfig(
@@ -91,6 +98,7 @@ def test_clutter(method: str, lag: int, empty_room_scans: int) -> None:
         learning_scans=4,
         difference_lag_scans=lag,
         averaging_factor=0.9,
+        shadow_window_samples=11,
     )
     core, reference, board = _core.ClutterFilter(), ClutterFilter(as_reference(config)), Scoreboard()
     assert core.configure(config, 64) == _core.Status.ok

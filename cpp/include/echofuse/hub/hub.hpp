@@ -16,6 +16,7 @@
 #include "echofuse/hub/measure/point_clusters.hpp"
 #include "echofuse/hub/track/kalman_tracker.hpp"
 #include "echofuse/hub/track/phd_tracker.hpp"
+#include "echofuse/hub/track/range_tracker.hpp"
 #include "echofuse/hub/track/track_manager.hpp"
 #include "echofuse/link/messages.hpp"
 
@@ -24,6 +25,7 @@ namespace echofuse::hub {
 enum class Tracker : std::uint8_t {
   kPhd,     ///< the paper: particle PHD filter, its peaks, tracks
   kKalman,  ///< a Kalman filter a track and global nearest neighbour
+  kRange,   ///< tracks from the nodes' paths (docs/decisions/0004-several-people.md); points are only shown
 };
 
 struct SensorRadarHubConfig {
@@ -40,6 +42,7 @@ struct SensorRadarHubConfig {
   PhdConfig phd;
   estimation::MixtureConfig em;
   TrackManagerConfig tracks;
+  RangeTrackerConfig ranges;
 };
 
 /// The first impossible field; of a stage that is impossible by itself only the stage's name.
@@ -74,6 +77,7 @@ class SensorRadarHub {
   SensorRadarHubCounters counters() const;
 
  private:
+  Status track(float dt_s, link::Tracks& tracks);
   float step_s(std::int64_t time_us);
   void predict_people(float dt_s, BoundedVector<Point>& people) const;
   void tap_frame() const;
@@ -88,6 +92,7 @@ class SensorRadarHub {
   PointClusters point_clusters_;
   PhdTracker phd_tracker_;
   KalmanTracker kalman_tracker_;
+  RangeTracker range_tracker_;
 
   Frame frame_;
   BoundedVector<Measurement, kMaxMeasurementsPerFrame> measurements_;

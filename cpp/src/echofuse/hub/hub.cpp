@@ -13,7 +13,7 @@ const char* invalid_field(const SensorRadarHubConfig& config) {
   if (const char* field = invalid_site(nodes, config.area); field != nullptr) return field;
   if (!(config.frame_period_s > 0.0f && std::isfinite(config.frame_period_s))) return "frame_period_s";
   if (config.aid_missed_frames < 0) return "aid_missed_frames";
-  if (config.tracker > Tracker::kKalman) return "tracker";
+  if (config.tracker > Tracker::kRange) return "tracker";
   if (invalid_field(config.frame_assembler) != nullptr) return "frame_assembler";
   if (invalid_field(config.ellipse) != nullptr) return "ellipse";
   if (invalid_field(config.selection) != nullptr || !suits(config.selection, nodes)) return "selection";
@@ -21,6 +21,7 @@ const char* invalid_field(const SensorRadarHubConfig& config) {
   if (invalid_field(config.phd) != nullptr) return "phd";
   if (invalid_field(config.em) != nullptr) return "em";
   if (invalid_field(config.tracks) != nullptr) return "tracks";
+  if (invalid_field(config.ranges) != nullptr) return "ranges";
   return nullptr;
 }
 
@@ -28,11 +29,13 @@ Status SensorRadarHub::configure(const SensorRadarHubConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   const Span<const NodeSite> nodes{config_.nodes.data(), static_cast<std::size_t>(config.n_nodes)};
-  const std::array<Status, 5> made{frame_assembler_.configure(config.frame_assembler, nodes),
+  const std::array<Status, 6> made{frame_assembler_.configure(config.frame_assembler, nodes),
                                    selection_.configure(config.selection, config.ellipse, nodes, config.area),
                                    point_clusters_.configure(config.point_clusters),
                                    phd_tracker_.configure(config.phd, config.em, config.tracks),
-                                   kalman_tracker_.configure(config.tracks)};
+                                   kalman_tracker_.configure(config.tracks),
+                                   range_tracker_.configure(config.ranges, config.ellipse.body_radius_m, nodes,
+                                                            config.area)};
   for (const Status status : made) ECHOFUSE_CHECK(status == Status::kOk);  // invalid_field() saw to it
   configured_ = true;
   reset();
@@ -45,6 +48,7 @@ void SensorRadarHub::reset() {
   point_clusters_.reset();
   phd_tracker_.reset();
   kalman_tracker_.reset();
+  range_tracker_.reset();
   known_.clear();
   first_frame_ = true;
   clock_faults_ = 0;
@@ -54,6 +58,7 @@ void SensorRadarHub::set_tap_sink(const TapSink& sink) {
   taps_ = sink;
   phd_tracker_.set_tap_sink(sink);
   kalman_tracker_.set_tap_sink(sink);
+  range_tracker_.set_tap_sink(sink);
 }
 
 Status SensorRadarHub::receive(const link::Detections& report, std::int64_t now_us) {
@@ -79,11 +84,7 @@ Status SensorRadarHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
   const Status clustered = point_clusters_.process(measurements_.span(), points_);
   tap_points();
 
-  BoundedVector<estimation::Position, kMaxPointsPerFrame> positions;
-  for (const PointCluster& point : points_) ECHOFUSE_CHECK(positions.try_push_back({point.x_m, point.y_m}));
-  const Status tracked = config_.tracker == Tracker::kPhd
-                             ? phd_tracker_.process(positions.span(), dt_s, tracks)
-                             : kalman_tracker_.process(positions.span(), dt_s, tracks);
+  const Status tracked = track(dt_s, tracks);
   tracks.time_us = frame_.time_us;
   tracks.frame = frame_.frame;
   known_.clear();
@@ -91,6 +92,16 @@ Status SensorRadarHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
   for (const Status status : {selected, clustered, tracked})
     if (status != Status::kOk) return status;
   return Status::kOk;
+}
+
+/// By the configured tracker.
+Status SensorRadarHub::track(float dt_s, link::Tracks& tracks) {
+  if (config_.tracker == Tracker::kRange)
+    return range_tracker_.process(frame_.detections.span(), dt_s, tracks);
+  BoundedVector<estimation::Position, kMaxPointsPerFrame> positions;
+  for (const PointCluster& point : points_) ECHOFUSE_CHECK(positions.try_push_back({point.x_m, point.y_m}));
+  if (config_.tracker == Tracker::kPhd) return phd_tracker_.process(positions.span(), dt_s, tracks);
+  return kalman_tracker_.process(positions.span(), dt_s, tracks);
 }
 
 /// [s] since the last frame.
@@ -115,10 +126,11 @@ void SensorRadarHub::predict_people(float dt_s, BoundedVector<Point>& people) co
 }
 
 SensorRadarHubCounters SensorRadarHub::counters() const {
-  const TrackManager& manager =
-      config_.tracker == Tracker::kPhd ? phd_tracker_.manager() : kalman_tracker_.manager();
+  std::uint32_t dropped_births = range_tracker_.dropped_births();
+  if (config_.tracker == Tracker::kPhd) dropped_births = phd_tracker_.manager().dropped_births();
+  if (config_.tracker == Tracker::kKalman) dropped_births = kalman_tracker_.manager().dropped_births();
   return {frame_assembler_.counters(), selection_.counters(), point_clusters_.dropped(),
-          manager.dropped_births(), clock_faults_};
+          dropped_births, clock_faults_};
 }
 
 void SensorRadarHub::tap_frame() const {

@@ -41,3 +41,11 @@ class ConstantVelocityFilter:
         rest = np.eye(4) - gain @ POSITION
         self.state = self.state + gain @ innovation
         self.covariance = rest @ self.covariance @ rest.T + gain @ measurement_covariance @ gain.T
+
+    def update_along(self, direction: NDArray[np.float64], innovation_m: float, variance_m2: float) -> None:
+        """Take in one number that grows by direction (2,) . change of position; Joseph's form."""
+        shown = direction @ POSITION
+        gain = self.covariance @ shown / (shown @ self.covariance @ shown + variance_m2)
+        rest = np.eye(4) - np.outer(gain, shown)
+        self.state = self.state + gain * innovation_m
+        self.covariance = rest @ self.covariance @ rest.T + variance_m2 * np.outer(gain, gain)

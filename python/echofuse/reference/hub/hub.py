@@ -26,6 +26,12 @@ from echofuse.reference.hub.measure.point_clusters import PointClusterConfig, Po
 from echofuse.reference.hub.track.kalman_tracker import KalmanTracker
 from echofuse.reference.hub.track.phd_filter import PhdConfig
 from echofuse.reference.hub.track.phd_tracker import PhdStep, PhdTracker
+from echofuse.reference.hub.track.range_tracker import (
+    RangeStep,
+    RangeTrack,
+    RangeTracker,
+    RangeTrackerConfig,
+)
 from echofuse.reference.hub.track.track_manager import UNCONFIRMED, Step, Track, TrackManagerConfig
 
 Array = NDArray[np.float64]
@@ -55,7 +61,7 @@ class SensorRadarHubConfig(Protocol):
     area: Area
     frame_period_s: float
     aid_missed_frames: int
-    tracker: str  # phd | kalman
+    tracker: str  # phd | kalman | range
     frame_assembler: FrameAssemblerConfig
     ellipse: EllipseConfig
     selection: SelectionConfig
@@ -63,6 +69,7 @@ class SensorRadarHubConfig(Protocol):
     phd: PhdConfig
     em: MixtureConfig
     tracks: TrackManagerConfig
+    ranges: RangeTrackerConfig
 
 
 @dataclass
@@ -86,7 +93,7 @@ class HubFrame(NamedTuple):
     number: int
     dt_s: float
     taps: dict[str, Array]  # by the names of TapId
-    tracks: list[Track]
+    tracks: list[Track] | list[RangeTrack]
     margins: dict[str, float]  # by stage: selection, points, number, peaks, resampled, tracks
 
 
@@ -105,12 +112,16 @@ class SensorRadarHub:
         self.assembler = FrameAssembler(config.frame_assembler, [node.node_id for node in nodes])
         self.phd: PhdTracker | None = None
         self.kalman: KalmanTracker | None = None
+        self.ranges: RangeTracker | None = None
         if config.tracker == "phd":
             self.phd = PhdTracker(config.phd, config.em, config.tracks, limits, limits.max_tracks)
+        elif config.tracker == "range":
+            radius_m = config.ellipse.body_radius_m
+            self.ranges = RangeTracker(config.ranges, radius_m, self.site, limits.max_tracks)
         else:
             kalman = SimpleNamespace(**(vars(config.tracks) | {"update": "kalman"}))
             self.kalman = KalmanTracker(kalman, limits.max_tracks)
-        self.known: list[Track] = []
+        self.known: list[Track] | list[RangeTrack] = []
         self.last_time_us: int | None = None
         self.clock_faults = 0
 
@@ -136,12 +147,16 @@ class SensorRadarHub:
         clusters = point_clusters(self.config.point_clusters, selected.position_m, selected.weight)
         points = keep_heaviest(clusters, self.limits.max_points)
         taps = measurement_taps(closed, selected, points)
+        step: Step | RangeStep
         margins = {"selection": selected.margin, "points": points.margin}
         if self.phd is not None:
             phd_step = self.phd.process(points.position_m, dt_s)
             taps |= phd_taps(phd_step)
             margins |= phd_margins(phd_step)
             step = phd_step.step
+        elif self.ranges is not None:
+            frame = closed.frame
+            step = self.ranges.process(frame.node_index, frame.path_m, dt_s)
         else:
             assert self.kalman is not None
             step = self.kalman.process(points.position_m, dt_s)
@@ -217,7 +232,7 @@ def phd_margins(step: PhdStep) -> dict[str, float]:
     }
 
 
-def track_rows(step: Step) -> Array:
+def track_rows(step: Step | RangeStep) -> Array:
     """(t, 7): id, state, x, y, vx, vy, frames since the last update."""
     rows = [
         (t.id, t.state, *t.filter.state[[0, 2]], *t.filter.state[[1, 3]], t.frames_since_update)

@@ -36,10 +36,10 @@ bool uses_envelope(ClutterMethod method);
 
 /// Removes what stands still (sensor-radar paper, Sec. IV-D). The background is the mean of empty-room scans,
 /// or, where there are none, of the first learning_scans. The exponential average starts as a plain mean.
-/// kEmptyRoomShadowed subtracts what of the background is still there: around each sample, the scan is fitted
-/// by the background times a complex gain of at most 1 (the background and its slope, which is its quadrature,
-/// as a band-pass signal's slope is). A person in front of a wall weakens its echo; subtracted whole, the
-/// wall's echo would appear as a second person.
+/// kEmptyRoomShadowed subtracts what of the background is still there: around each sample, weighted by a
+/// triangle, the scan is fitted by the background times a complex gain of at most 1 (of the background and its
+/// slope, which is its quadrature, as a band-pass signal's slope is). A person in front of a wall weakens its
+/// echo; subtracted whole, the wall's echo would appear as a second person.
 /// Reference: python/echofuse/reference/node/scan/clutter.py
 class ClutterFilter {
  public:

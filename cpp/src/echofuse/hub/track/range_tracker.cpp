@@ -13,12 +13,12 @@ using estimation::ConstantVelocityFilter;
 
 constexpr float kLogSqrtTwoPi = 0.91893853f;
 constexpr float kGateSigmas = 3.0f;
-constexpr float kBody_m = 1.0f;      ///< [m] clutter_body_per_m reaches so far
-constexpr float kEcho_m = 2.5f;      ///< [m] clutter_echo_per_m
-constexpr float kFar_m = 8.0f;       ///< [m] clutter_far_per_m
+constexpr float kBody_m = 1.0f;        ///< [m] clutter_body_per_m reaches so far
+constexpr float kEcho_m = 2.5f;        ///< [m] clutter_echo_per_m
+constexpr float kFar_m = 8.0f;         ///< [m] clutter_far_per_m
 constexpr float kGridVariance = 0.3f;  ///< [1] times the step squared: of a path at the nearest grid point
-constexpr float kBirthShare = 0.5f;  ///< [1] of a birth's score that it keeps: the place was chosen for it
-constexpr float kOutside_m = 0.2f;   ///< [m] a track may leave the area by so much
+constexpr float kBirthShare = 0.5f;    ///< [1] of a birth's score that it keeps: the place was chosen for it
+constexpr float kOutside_m = 0.2f;     ///< [m] a track may leave the area by so much
 constexpr float kSharedVariance = 4.0f;  ///< [1] times wider: a detection that is perhaps another's
 constexpr float kDouble_m = 0.3f;        ///< [m] two confirmed tracks nearer than this
 constexpr float kDouble_mps = 0.7f;      ///< [m/s] and alike in velocity are one person
@@ -80,7 +80,7 @@ const char* invalid_field(const RangeTrackerConfig& config) {
 
 Status RangeTracker::configure(const RangeTrackerConfig& config, float body_radius_m,
                                Span<const NodeSite> nodes, const Area& area) {
-  if (invalid_field(config) != nullptr || !within(body_radius_m, 0.0f, 1.0f)) return Status::kInvalidConfig;
+  if (invalid_field(config) != nullptr || !(body_radius_m >= 0.0f)) return Status::kInvalidConfig;
   if (nodes.size() > kMaxNodes || invalid_site(nodes, area) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   body_radius_m_ = body_radius_m;
@@ -108,6 +108,7 @@ Status RangeTracker::configure(const RangeTrackerConfig& config, float body_radi
 void RangeTracker::reset() {
   tracks_.clear();
   next_id_ = 1;
+  dropped_births_ = 0;
 }
 
 Status RangeTracker::process(Span<const FrameDetection> detections, float dt_s, link::Tracks& tracks) {
@@ -116,10 +117,10 @@ Status RangeTracker::process(Span<const FrameDetection> detections, float dt_s, 
   if (!(dt_s > 0.0f) || !std::isfinite(dt_s) || !index_frame(detections)) return Status::kInvalidInput;
   rate_clutter();
   advance(dt_s);
-  begin_tracks();
+  const bool all_began = begin_tracks();
   report(tracks);
   show_tracks(sink_, tracks);
-  return Status::kOk;
+  return all_began ? Status::kOk : Status::kTruncated;
 }
 
 /// Notes where each node's detections begin; false: not in order, not finite, or too many.
@@ -184,8 +185,8 @@ int RangeTracker::nearest(std::size_t node, float path_m, bool free_only, float 
 /// Logarithm of the likelier of two: the detection is the person's, or the person was missed.
 float RangeTracker::hit_score(int detection, float error_m, float std_m) const {
   const float deviations = error_m / std_m;
-  const float hit = clutter_score_[static_cast<std::size_t>(detection)] - std::log(std_m) -
-                    0.5f * deviations * deviations;
+  const float hit =
+      clutter_score_[static_cast<std::size_t>(detection)] - std::log(std_m) - 0.5f * deviations * deviations;
   return std::max(hit, miss_score_);
 }
 
@@ -286,8 +287,8 @@ void RangeTracker::advance(float dt_s) {
   (void)tracks_.resize_within(kept);
 }
 
-/// At the grid's maxima of what the tracks have left over, best first.
-void RangeTracker::begin_tracks() {
+/// At the grid's maxima of what the tracks have left over, best first; false when there was no room for one.
+bool RangeTracker::begin_tracks() {
   const auto place = [this](int column, int row) {
     return Point{area_.min_x_m + (static_cast<float>(column) + 0.5f) * step_m_,
                  area_.min_y_m + (static_cast<float>(row) + 0.5f) * step_m_};
@@ -322,10 +323,12 @@ void RangeTracker::begin_tracks() {
     }
   }
   const std::size_t before = tracks_.size();
+  bool all_began = true;
   for (const Cell& cell : best) {
-    if (tracks_.full() || tracks_.size() - before >= static_cast<std::size_t>(config_.max_births)) break;
-    begin_at(place(cell.index / rows_, cell.index % rows_));
+    if (tracks_.size() - before >= static_cast<std::size_t>(config_.max_births)) break;
+    if (!begin_at(place(cell.index / rows_, cell.index % rows_))) all_began = false;
   }
+  return all_began;
 }
 
 /// Score of a person at a place, by detections that nobody claims.
@@ -336,7 +339,8 @@ float RangeTracker::cell_score(const Point& place) const {
     const float path = path_length(place, nodes_[node].tx, nodes_[node].rx, body_radius_m_);
     if (path < blind_until_m_[node]) continue;
     const int own = nearest(node, path, true, 4.0f * std_m);
-    const bool near = own >= 0 && std::fabs(detections_[static_cast<std::size_t>(own)].path_m - path) <= config_.gate_m;
+    const bool near =
+        own >= 0 && std::fabs(detections_[static_cast<std::size_t>(own)].path_m - path) <= config_.gate_m;
     if (!near && nearest(node, path, false, config_.gate_m) >= 0) continue;  // another's: says nothing
     score += own < 0 ? miss_score_
                      : hit_score(own, detections_[static_cast<std::size_t>(own)].path_m - path, std_m);
@@ -344,9 +348,10 @@ float RangeTracker::cell_score(const Point& place) const {
   return score;
 }
 
-void RangeTracker::begin_at(const Point& place) {
+/// False when there is no room for a track that should begin.
+bool RangeTracker::begin_at(const Point& place) {
   for (const RangeTrack& track : tracks_)
-    if (distance_m(track.filter.position(), {place.x_m, place.y_m}) < config_.birth_exclusion_m) return;
+    if (distance_m(track.filter.position(), {place.x_m, place.y_m}) < config_.birth_exclusion_m) return true;
   const float position = config_.newborn_position_std_m * config_.newborn_position_std_m;
   const float velocity = config_.newborn_velocity_std_mps * config_.newborn_velocity_std_mps;
   RangeTrack track;
@@ -354,10 +359,15 @@ void RangeTracker::begin_at(const Point& place) {
       ConstantVelocityFilter::State(place.x_m, 0.0f, place.y_m, 0.0f),
       ConstantVelocityFilter::State(position, velocity, position, velocity).asDiagonal());
   const float score = follow(track, false);
-  if (!(score >= config_.birth_score)) return;
+  if (!(score >= config_.birth_score)) return true;
   track.score = kBirthShare * score;
-  track.id = next_id_++;
-  ECHOFUSE_CHECK(tracks_.try_push_back(track));
+  track.id = next_id_;
+  if (!tracks_.try_push_back(track)) {
+    ++dropped_births_;
+    return false;
+  }
+  ++next_id_;
+  return true;
 }
 
 void RangeTracker::report(link::Tracks& tracks) const {
@@ -367,9 +377,10 @@ void RangeTracker::report(link::Tracks& tracks) const {
     link::TrackState state = link::TrackState::kUnconfirmed;
     if (track.confirmed)
       state = track.frames_since_update == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
-    ECHOFUSE_CHECK(tracks.tracks.try_push_back({track.id, state, track.frames_since_update, x(0), x(2), x(1),
-                                                x(3), p(0, 0), p(0, 2), p(2, 2)}));
-    for (std::size_t i = tracks.tracks.size() - 1; i > 0 && tracks.tracks[i].id < tracks.tracks[i - 1].id; --i)
+    ECHOFUSE_CHECK(tracks.tracks.try_push_back(
+        {track.id, state, track.frames_since_update, x(0), x(2), x(1), x(3), p(0, 0), p(0, 2), p(2, 2)}));
+    for (std::size_t i = tracks.tracks.size() - 1; i > 0 && tracks.tracks[i].id < tracks.tracks[i - 1].id;
+         --i)
       std::swap(tracks.tracks[i], tracks.tracks[i - 1]);
   }
 }

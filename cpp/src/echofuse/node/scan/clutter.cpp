@@ -10,6 +10,21 @@ namespace {
 
 constexpr std::size_t kMaxShadowWindow = 127;
 
+/// Sum of the last `window` values (odd), weighted by a triangle: it must not jump when a loud one enters.
+class TriangleSum {
+ public:
+  explicit TriangleSum(std::size_t window) : first_((window + 1) / 2), second_((window + 1) / 2) {}
+  void push(float value) {
+    first_.push(value);
+    second_.push(first_.value());
+  }
+  float value() const { return second_.value(); }
+
+ private:
+  SlidingSum<(kMaxShadowWindow + 1) / 2> first_;
+  SlidingSum<(kMaxShadowWindow + 1) / 2> second_;
+};
+
 }  // namespace
 
 const char* invalid_field(const ClutterConfig& config) {
@@ -103,8 +118,7 @@ float ClutterFilter::slope(std::size_t k) const {
 /// around the sample, then shrunk until together they weaken the background. samples may be residual.
 void ClutterFilter::subtract_shadowed(Span<const float> samples, Span<float> residual) const {
   const auto window = static_cast<std::size_t>(config_.shadow_window_samples);
-  using Sum = SlidingSum<kMaxShadowWindow>;
-  Sum background_power(window), slope_power(window), along(window), across(window);
+  TriangleSum background_power(window), slope_power(window), along(window), across(window);
   const std::size_t ahead = window / 2;
   for (std::size_t k = 0; k < n_samples_ + ahead; ++k) {
     const bool inside = k < n_samples_;

@@ -9,10 +9,11 @@ Samples = NDArray[np.float64]
 
 
 class ClutterConfig(Protocol):
-    method: str  # "empty_room_envelope", "empty_room_scan", "exponential_average" or "frame_difference"
+    method: str  # "empty_room_" + "envelope", "scan" or "shadowed", "exponential_average", "frame_difference"
     averaging_factor: float
     learning_scans: int
     difference_lag_scans: int
+    shadow_window_samples: int
 
 
 class ClutterFilter:
@@ -54,6 +55,8 @@ class ClutterFilter:
             self._learnt.append(samples)
             return np.zeros_like(samples)
         background: Samples = np.mean(self._empty_room or self._learnt, axis=0)
+        if method == "empty_room_shadowed":
+            return samples - shadowed(background, samples, self._config.shadow_window_samples)
         return samples - background
 
     def _frame_difference(self, samples: Samples) -> Samples:
@@ -70,6 +73,28 @@ class ClutterFilter:
         self._average = keep * previous + (1.0 - keep) * samples
         self._averaged += 1
         return samples - previous if ready else np.zeros_like(samples)
+
+
+def shadowed(background: Samples, samples: Samples, window: int) -> Samples:
+    """What is left of background (n,) in samples (n,) [count].
+
+    Around each sample, by a triangle of `window` samples, the background and its slope (its quadrature, as it is a band-pass signal) are each
+    fitted to the samples; together they may weaken the background but not strengthen it.
+    """
+    padded = np.concatenate([[0.0], background, [0.0]])
+    slope = padded[2:] - padded[:-2]
+
+    def around(values: Samples) -> Samples:
+        triangle = np.convolve(np.ones(window // 2 + 1), np.ones(window // 2 + 1))
+        return np.convolve(values, triangle)[window // 2 : window // 2 + len(values)]
+
+    power, slope_power = around(background**2), around(slope**2)
+    usable = (power > 0.0) & (slope_power > 0.0)
+    power, slope_power = np.where(usable, power, 1.0), np.where(usable, slope_power, 1.0)
+    gain, turn = around(samples * background) / power, around(samples * slope) / slope_power
+    strength = np.sqrt(gain**2 + turn**2 * slope_power / power)
+    left = (gain * background + turn * slope) / np.maximum(1.0, strength)
+    return np.where(usable, left, 0.0)
 
 
 def rectified(samples: Samples) -> Samples:
