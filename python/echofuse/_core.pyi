@@ -61,6 +61,8 @@ __all__: list[str] = [
     "PulseIntegratorConfig",
     "RangeClusterConfig",
     "RangeClusterer",
+    "RangeTracker",
+    "RangeTrackerConfig",
     "ResamplingChance",
     "SENSOR_RADAR_HUB_BYTES",
     "SENSOR_RADAR_NODE_BYTES",
@@ -744,6 +746,8 @@ class ClutterMethod:
 
       empty_room_scan : scan less the empty room's
 
+      empty_room_shadowed : scan less what people's shadows leave of the empty room's
+
       exponential_average : scan less its mean so far
 
       frame_difference : scan less an earlier scan
@@ -752,6 +756,7 @@ class ClutterMethod:
     __members__: typing.ClassVar[dict[str, ClutterMethod]]
     empty_room_envelope: typing.ClassVar[ClutterMethod]
     empty_room_scan: typing.ClassVar[ClutterMethod]
+    empty_room_shadowed: typing.ClassVar[ClutterMethod]
     exponential_average: typing.ClassVar[ClutterMethod]
     frame_difference: typing.ClassVar[ClutterMethod]
     @typing.overload
@@ -796,6 +801,7 @@ class ClutterConfig:
         averaging_factor: float = 0.95,
         learning_scans: int = 20,
         difference_lag_scans: int = 1,
+        shadow_window_samples: int = 31,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -830,6 +836,13 @@ class ClutterConfig:
         """
     @method.setter
     def method(self, value: ClutterMethod) -> None: ...
+    @property
+    def shadow_window_samples(self) -> int:
+        """
+        odd, 3 to 127
+        """
+    @shadow_window_samples.setter
+    def shadow_window_samples(self, value: int) -> None: ...
 
 class ClutterFilter:
     """
@@ -2546,6 +2559,289 @@ class KalmanTracker:
     @property
     def dropped_births(self) -> int: ...
 
+class RangeTrackerConfig:
+    """
+    Tracks from the nodes' paths; scores are logs.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    max_score: float
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> RangeTrackerConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> RangeTrackerConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        detection_probability: float = 0.65,
+        path_std_m: float = 0.15,
+        clutter_ahead_per_m: float = 0.05,
+        clutter_body_per_m: float = 0.25,
+        clutter_echo_per_m: float = 0.3,
+        clutter_far_per_m: float = 0.2,
+        blind_path_m: float = 0.3,
+        gate_m: float = 0.3,
+        gate_max_m: float = 0.7,
+        echo_tail_m: float = 0.5,
+        acceleration_density_m2ps3: float = 0.1,
+        newborn_position_std_m: float = 0.1,
+        newborn_velocity_std_mps: float = 1.6,
+        max_speed_mps: float = 2.5,
+        birth_step_m: float = 0.2,
+        birth_score: float = 2.0,
+        max_births: int = 10,
+        birth_exclusion_m: float = 0.8,
+        merge_distance_m: float = 0.6,
+        unconfirmed_memory: float = 0.8,
+        confirmed_memory: float = 0.9,
+        confirm_score: float = 20.0,
+        confirm_frames: int = 8,
+        confirm_nodes: int = 4,
+        confirmed_bonus: float = 6.0,
+        shared_score: float = 0.0,
+        max_score: float = 25.0,
+        drop_score: float = -3.0,
+        end_score: float = 0.0,
+        silent_nodes: int = 1,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def acceleration_density_m2ps3(self) -> float:
+        """
+        [m^2/s^3]
+        """
+    @acceleration_density_m2ps3.setter
+    def acceleration_density_m2ps3(self, value: float) -> None: ...
+    @property
+    def birth_exclusion_m(self) -> float:
+        """
+        [m]
+        """
+    @birth_exclusion_m.setter
+    def birth_exclusion_m(self, value: float) -> None: ...
+    @property
+    def birth_score(self) -> float:
+        """
+        least
+        """
+    @birth_score.setter
+    def birth_score(self, value: float) -> None: ...
+    @property
+    def birth_step_m(self) -> float:
+        """
+        [m] of the grid
+        """
+    @birth_step_m.setter
+    def birth_step_m(self, value: float) -> None: ...
+    @property
+    def blind_path_m(self) -> float:
+        """
+        [m] behind the direct path
+        """
+    @blind_path_m.setter
+    def blind_path_m(self, value: float) -> None: ...
+    @property
+    def clutter_ahead_per_m(self) -> float:
+        """
+        [1/m] behind no detection
+        """
+    @clutter_ahead_per_m.setter
+    def clutter_ahead_per_m(self, value: float) -> None: ...
+    @property
+    def clutter_body_per_m(self) -> float:
+        """
+        [1/m] to 1 m behind one
+        """
+    @clutter_body_per_m.setter
+    def clutter_body_per_m(self, value: float) -> None: ...
+    @property
+    def clutter_echo_per_m(self) -> float:
+        """
+        [1/m] to 2.5 m
+        """
+    @clutter_echo_per_m.setter
+    def clutter_echo_per_m(self, value: float) -> None: ...
+    @property
+    def clutter_far_per_m(self) -> float:
+        """
+        [1/m] to 8 m
+        """
+    @clutter_far_per_m.setter
+    def clutter_far_per_m(self, value: float) -> None: ...
+    @property
+    def confirm_frames(self) -> int:
+        """
+        least age
+        """
+    @confirm_frames.setter
+    def confirm_frames(self, value: int) -> None: ...
+    @property
+    def confirm_nodes(self) -> int:
+        """
+        with a detection of its own
+        """
+    @confirm_nodes.setter
+    def confirm_nodes(self, value: int) -> None: ...
+    @property
+    def confirm_score(self) -> float:
+        """
+        least
+        """
+    @confirm_score.setter
+    def confirm_score(self, value: float) -> None: ...
+    @property
+    def confirmed_bonus(self) -> float:
+        """
+        lead when detections are claimed
+        """
+    @confirmed_bonus.setter
+    def confirmed_bonus(self, value: float) -> None: ...
+    @property
+    def confirmed_memory(self) -> float:
+        """
+        of a score, per frame
+        """
+    @confirmed_memory.setter
+    def confirmed_memory(self, value: float) -> None: ...
+    @property
+    def detection_probability(self) -> float:
+        """
+        of a node, per scan
+        """
+    @detection_probability.setter
+    def detection_probability(self, value: float) -> None: ...
+    @property
+    def drop_score(self) -> float:
+        """
+        an unconfirmed track below dies
+        """
+    @drop_score.setter
+    def drop_score(self, value: float) -> None: ...
+    @property
+    def echo_tail_m(self) -> float:
+        """
+        [m]
+        """
+    @echo_tail_m.setter
+    def echo_tail_m(self, value: float) -> None: ...
+    @property
+    def end_score(self) -> float:
+        """
+        a confirmed track below dies
+        """
+    @end_score.setter
+    def end_score(self, value: float) -> None: ...
+    @property
+    def gate_m(self) -> float:
+        """
+        [m] narrowest
+        """
+    @gate_m.setter
+    def gate_m(self, value: float) -> None: ...
+    @property
+    def gate_max_m(self) -> float:
+        """
+        [m] widest
+        """
+    @gate_max_m.setter
+    def gate_max_m(self, value: float) -> None: ...
+    @property
+    def max_births(self) -> int:
+        """
+        per frame
+        """
+    @max_births.setter
+    def max_births(self, value: int) -> None: ...
+    @property
+    def max_speed_mps(self) -> float:
+        """
+        [m/s] of an unconfirmed track
+        """
+    @max_speed_mps.setter
+    def max_speed_mps(self, value: float) -> None: ...
+    @property
+    def merge_distance_m(self) -> float:
+        """
+        [m]
+        """
+    @merge_distance_m.setter
+    def merge_distance_m(self, value: float) -> None: ...
+    @property
+    def newborn_position_std_m(self) -> float:
+        """
+        [m] per coordinate
+        """
+    @newborn_position_std_m.setter
+    def newborn_position_std_m(self, value: float) -> None: ...
+    @property
+    def newborn_velocity_std_mps(self) -> float:
+        """
+        [m/s] per coordinate
+        """
+    @newborn_velocity_std_mps.setter
+    def newborn_velocity_std_mps(self, value: float) -> None: ...
+    @property
+    def path_std_m(self) -> float:
+        """
+        [m]
+        """
+    @path_std_m.setter
+    def path_std_m(self, value: float) -> None: ...
+    @property
+    def shared_score(self) -> float:
+        """
+        of a node whose detection is another's
+        """
+    @shared_score.setter
+    def shared_score(self, value: float) -> None: ...
+    @property
+    def silent_nodes(self) -> int:
+        """
+        fewer with a detection: silent
+        """
+    @silent_nodes.setter
+    def silent_nodes(self, value: int) -> None: ...
+    @property
+    def unconfirmed_memory(self) -> float:
+        """
+        of a score, per frame
+        """
+    @unconfirmed_memory.setter
+    def unconfirmed_memory(self, value: float) -> None: ...
+
+class RangeTracker:
+    """
+    Tracks people by the nodes' paths themselves.
+    """
+    def __init__(self) -> None: ...
+    def configure(
+        self,
+        config: RangeTrackerConfig,
+        body_radius_m: typing.SupportsFloat | typing.SupportsIndex,
+        nodes: collections.abc.Sequence[NodeSite],
+        area: Area,
+    ) -> Status: ...
+    def process(
+        self,
+        node_index: numpy.typing.NDArray[numpy.int32],
+        path_m: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of Track) of detections by ascending node, then path (n,).
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+
 class Tracker:
     """
     Members:
@@ -2553,11 +2849,14 @@ class Tracker:
       phd
 
       kalman
+
+      range
     """
 
     __members__: typing.ClassVar[dict[str, Tracker]]
     kalman: typing.ClassVar[Tracker]
     phd: typing.ClassVar[Tracker]
+    range: typing.ClassVar[Tracker]
     @typing.overload
     def __eq__(self, other: Tracker) -> bool: ...
     @typing.overload
@@ -2590,6 +2889,7 @@ class SensorRadarHubConfig:
     frame_assembler: FrameAssemblerConfig
     phd: PhdConfig
     point_clusters: PointClusterConfig
+    ranges: RangeTrackerConfig
     selection: SelectionConfig
     tracks: TrackManagerConfig
     @staticmethod
@@ -2616,6 +2916,7 @@ class SensorRadarHubConfig:
         phd: PhdConfig = ...,
         em: MixtureConfig = ...,
         tracks: TrackManagerConfig = ...,
+        ranges: RangeTrackerConfig = ...,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -2804,5 +3105,5 @@ LIMITS: dict = {
     "max_assignment": 32,
 }
 MEASUREMENT_STAGES_BYTES: int = 33976
-SENSOR_RADAR_HUB_BYTES: int = 135096
-SENSOR_RADAR_NODE_BYTES: int = 65912
+SENSOR_RADAR_HUB_BYTES: int = 147848
+SENSOR_RADAR_NODE_BYTES: int = 65920

@@ -259,7 +259,7 @@ class RangeTracker:
         maxima.sort(key=lambda cell: -cell[0])
         n_begun = 0
         for score, i, j in maxima[: self.max_tracks]:
-            self._decide(score, c.birth_score)
+            self._decide(float(score), c.birth_score)
             if n_begun >= c.max_births or len(self.tracks) >= self.max_tracks:
                 break
             n_begun += self._begin_at(self.grid_m[i, j])
