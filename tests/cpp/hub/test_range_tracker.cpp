@@ -19,15 +19,15 @@ const std::array<NodeSite, 6> kNodes{{{1, {5.75f, 0.0f}, {0.0f, 1.5f}},
                                       {6, {5.75f, 0.0f}, {11.5f, 1.0f}}}};
 const Area kArea{0.0f, 0.0f, 11.5f, 6.0f};
 
-RangeTracker made() {
-  RangeTracker tracker;
-  REQUIRE(tracker.configure({}, 0.18f, {kNodes.data(), kNodes.size()}, kArea) == Status::kOk);
-  return tracker;
+void configure(RangeTracker& tracker) {
+  RangeTrackerConfig config;
+  config.detection_probability = 0.8f;  // every node hears everybody here
+  REQUIRE(tracker.configure(config, 0.18f, {kNodes.data(), kNodes.size()}, kArea) == Status::kOk);
 }
 
 /// Exact paths of everybody, each node's in order.
-BoundedVector<FrameDetection, kMaxFrameDetections> seen(Span<const Point> people) {
-  BoundedVector<FrameDetection, kMaxFrameDetections> detections;
+void see(Span<const Point> people, BoundedVector<FrameDetection>& detections) {
+  detections.clear();
   for (std::size_t node = 0; node < kNodes.size(); ++node) {
     std::array<float, 4> paths{};
     std::size_t n = 0;
@@ -36,19 +36,20 @@ BoundedVector<FrameDetection, kMaxFrameDetections> seen(Span<const Point> people
     for (std::size_t i = 0; i < n; ++i)
       REQUIRE(detections.try_push_back({static_cast<int>(node), paths[i], 10.0f}));
   }
-  return detections;
 }
 
 }  // namespace
 
 TEST_CASE("Three walking people become three confirmed tracks where they are") {
-  RangeTracker tracker = made();
+  RangeTracker tracker;
+  configure(tracker);
+  BoundedVector<FrameDetection, kMaxFrameDetections> detections;
   link::Tracks tracks;
   std::array<Point, 3> people;
   for (int k = 0; k < 25; ++k) {
     const float t = 0.1f * static_cast<float>(k);
     people = {Point{8.8f - 1.4f * t, 2.6f}, Point{2.8f + 1.3f * t, 4.5f}, Point{3.1f + 1.0f * t, 1.0f}};
-    const auto detections = seen({people.data(), people.size()});
+    see({people.data(), people.size()}, detections);
     (void)tracker.process(detections.span(), 0.1f, tracks);
   }
   int confirmed = 0;
@@ -64,11 +65,13 @@ TEST_CASE("Three walking people become three confirmed tracks where they are") {
 }
 
 TEST_CASE("Whoever leaves ends, and nobody makes no track") {
-  RangeTracker tracker = made();
+  RangeTracker tracker;
+  configure(tracker);
+  BoundedVector<FrameDetection, kMaxFrameDetections> detections;
   link::Tracks tracks;
   for (int k = 0; k < 20; ++k) {
     const std::array<Point, 1> person{{{4.0f + 0.1f * static_cast<float>(k), 3.0f}}};
-    const auto detections = seen({person.data(), 1});
+    see({person.data(), 1}, detections);
     CHECK(tracker.process(detections.span(), 0.1f, tracks) == Status::kOk);
   }
   REQUIRE(tracks.tracks.size() >= 1);

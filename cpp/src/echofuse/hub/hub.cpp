@@ -29,13 +29,13 @@ Status SensorRadarHub::configure(const SensorRadarHubConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   const Span<const NodeSite> nodes{config_.nodes.data(), static_cast<std::size_t>(config.n_nodes)};
-  const std::array<Status, 6> made{frame_assembler_.configure(config.frame_assembler, nodes),
-                                   selection_.configure(config.selection, config.ellipse, nodes, config.area),
-                                   point_clusters_.configure(config.point_clusters),
-                                   phd_tracker_.configure(config.phd, config.em, config.tracks),
-                                   kalman_tracker_.configure(config.tracks),
-                                   range_tracker_.configure(config.ranges, config.ellipse.body_radius_m, nodes,
-                                                            config.area)};
+  const std::array<Status, 6> made{
+      frame_assembler_.configure(config.frame_assembler, nodes),
+      selection_.configure(config.selection, config.ellipse, nodes, config.area),
+      point_clusters_.configure(config.point_clusters),
+      phd_tracker_.configure(config.phd, config.em, config.tracks),
+      kalman_tracker_.configure(config.tracks),
+      range_tracker_.configure(config.ranges, config.ellipse.body_radius_m, nodes, config.area)};
   for (const Status status : made) ECHOFUSE_CHECK(status == Status::kOk);  // invalid_field() saw to it
   configured_ = true;
   reset();
@@ -129,8 +129,8 @@ SensorRadarHubCounters SensorRadarHub::counters() const {
   std::uint32_t dropped_births = range_tracker_.dropped_births();
   if (config_.tracker == Tracker::kPhd) dropped_births = phd_tracker_.manager().dropped_births();
   if (config_.tracker == Tracker::kKalman) dropped_births = kalman_tracker_.manager().dropped_births();
-  return {frame_assembler_.counters(), selection_.counters(), point_clusters_.dropped(),
-          dropped_births, clock_faults_};
+  return {frame_assembler_.counters(), selection_.counters(), point_clusters_.dropped(), dropped_births,
+          clock_faults_};
 }
 
 void SensorRadarHub::tap_frame() const {
