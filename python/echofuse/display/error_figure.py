@@ -27,10 +27,9 @@ PAPER_FRACTION = 0.80
 SHORTEST_AXIS_M = 0.5  # so that the paper's point is always inside
 
 
-def error_figure(
-    result: RunResult, *, tracker: str = "PHD filter", baseline: str = "Kalman baseline"
-) -> Figure:
+def error_figure(result: RunResult, *, baseline: str = "Kalman baseline") -> Figure:
     """Draw the error's cdf, the error over time and the number of people, of tracker and baseline."""
+    tracker = setting.tracker_name(result)
     series = (
         (tracker, style.TRACKER, 1.6, localisation_errors(result, result.tracks)),
         (baseline, style.BASELINE, 1.0, localisation_errors(result, result.baseline_tracks)),

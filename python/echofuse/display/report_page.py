@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from echofuse.result import RunResult
 
 NODE_GROUPS = {"scan": "One scan through the stages of a node", "stack": "All scans of a node"}
-TRACKER_NAMES = {"phd": "PHD filter", "kalman": "Kalman filter"}
 
 #: Order, wording and the paper's figures of the metrics; others are printed after these, by their names.
 METRICS: dict[str, tuple[str, str]] = {
@@ -99,7 +98,7 @@ def _head(result: RunResult) -> str:
 
 
 def _metrics(result: RunResult) -> str:
-    tracker = TRACKER_NAMES.get(str(result.site.settings.get("tracker", "phd")), "Tracker")
+    tracker = setting.tracker_name(result)
     both = (result.metrics, result.baseline_metrics)
     given = list(dict.fromkeys(key for table in both for key in table))
     keys = [key for key in METRICS if key in given] + [key for key in given if key not in METRICS]

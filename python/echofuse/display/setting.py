@@ -98,3 +98,9 @@ def area_outline_m(site: Site) -> NDArray[np.float64]:
 def truth_path_m(site: Site) -> NDArray[np.float64] | None:
     """Return the path (n, 2) [m] that the site says was walked, None when it says nothing."""
     return None if site.truth is None else np.asarray(site.truth.path_m, dtype=np.float64).reshape(-1, 2)
+
+
+def tracker_name(result: RunResult) -> str:
+    """Return what the site's tracker is called in tables and legends."""
+    names = {"phd": "PHD filter", "kalman": "Kalman filter", "range": "Path tracker"}
+    return names.get(str(result.site.settings.get("tracker", "phd")), "Tracker")
