@@ -8,7 +8,7 @@ from echofuse.site import apply_settings, example_site, example_sites, parse_sit
 from echofuse.site.stages import MEASURED, PIPELINES
 
 
-@pytest.mark.parametrize("name", ["sensor_radar", "p410_triangle"])
+@pytest.mark.parametrize("name", ["sensor_radar", "sensor_radar_several", "p410_triangle"])
 def test_an_example_loads_and_comes_back(name: str) -> None:
     site = example_site(name)
     assert parse_site(site.to_toml()) == site

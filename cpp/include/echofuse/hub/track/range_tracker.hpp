@@ -21,34 +21,34 @@ struct RangeTrackerConfig {
   float detection_probability = 0.65f;  ///< [1] of a person by a node, per scan, in (0, 1)
   float path_std_m = 0.15f;             ///< [m] of a detection's path, > 0
   // Other detections of a node, per metre of path, by their distance behind another detection; > 0.
-  float clutter_ahead_per_m = 0.05f;  ///< [1/m] behind none, or further than 8 m: hardly anything
-  float clutter_body_per_m = 0.25f;   ///< [1/m] up to 1 m: the rest of the same body
-  float clutter_echo_per_m = 0.3f;    ///< [1/m] up to 2.5 m: by way of floor and walls
-  float clutter_far_per_m = 0.2f;     ///< [1/m] up to 8 m
-  float blind_path_m = 0.3f;          ///< [m] this near behind the direct path a miss says nothing, >= 0
-  float gate_m = 0.3f;                ///< [m] of path: narrowest gate of a track, > 0
-  float gate_max_m = 0.7f;            ///< [m] widest gate, three deviations before, >= gate_m
-  float echo_tail_m = 0.5f;           ///< [m] paths this far behind a confirmed track are his too, >= 0
-  float acceleration_density_m2ps3 = 0.1f;  ///< [m^2/s^3] velocity variance gained per second, >= 0
-  float newborn_position_std_m = 0.1f;      ///< [m] per coordinate, > 0
-  float newborn_velocity_std_mps = 1.6f;    ///< [m/s] per coordinate, > 0
-  float max_speed_mps = 2.5f;               ///< [m/s] an unconfirmed track that is faster dies, > 0
+  float clutter_ahead_per_m = 0.1f;  ///< [1/m] behind none, or further than 8 m: hardly anything
+  float clutter_body_per_m = 0.2f;   ///< [1/m] up to 1 m: the rest of the same body
+  float clutter_echo_per_m = 0.14f;  ///< [1/m] up to 2.5 m: by way of floor and walls
+  float clutter_far_per_m = 0.15f;   ///< [1/m] up to 8 m
+  float blind_path_m = 0.3f;         ///< [m] this near behind the direct path a miss says nothing, >= 0
+  float gate_m = 0.4f;               ///< [m] of path: narrowest gate of a track, > 0
+  float gate_max_m = 0.7f;           ///< [m] widest gate, three deviations before, >= gate_m
+  float echo_tail_m = 0.3f;          ///< [m] paths this far behind a confirmed track are his too, >= 0
+  float acceleration_density_m2ps3 = 0.05f;  ///< [m^2/s^3] velocity variance gained per second, >= 0
+  float newborn_position_std_m = 0.2f;       ///< [m] per coordinate, > 0
+  float newborn_velocity_std_mps = 1.2f;     ///< [m/s] per coordinate, > 0
+  float max_speed_mps = 2.5f;                ///< [m/s] an unconfirmed track that is faster dies, > 0
   float birth_step_m = 0.2f;       ///< [m] grid on which tracks begin; coarser if it has too many points, > 0
-  float birth_score = 2.0f;        ///< [1] a track begins at a maximum above this
+  float birth_score = 0.0f;        ///< [1] a track begins at a maximum above this
   int max_births = 10;             ///< [1] per frame, >= 0
   float birth_exclusion_m = 0.8f;  ///< [m] and not nearer to another track, >= 0
   float merge_distance_m = 0.6f;   ///< [m] an unconfirmed track dies this near to a better one, >= 0
   float unconfirmed_memory = 0.8f;  ///< [1] what is left of a score after a frame, in [0, 1]
-  float confirmed_memory = 0.9f;    ///< [1] the same of a confirmed track
+  float confirmed_memory = 0.96f;   ///< [1] the same of a confirmed track
   float confirm_score = 20.0f;      ///< [1] least score of a track that is confirmed
-  int confirm_frames = 8;           ///< [1] and least age, >= 1
-  int confirm_nodes = 4;            ///< [1] and nodes with a detection of its own, >= 1
-  float confirmed_bonus = 6.0f;     ///< [1] lead of confirmed tracks when detections are claimed, >= 0
-  float shared_score = 0.0f;        ///< [1] of a node whose detection there is another track's, <= 0
-  float max_score = 25.0f;          ///< [1] >= confirm_score
-  float drop_score = -3.0f;         ///< [1] an unconfirmed track below this dies
-  float end_score = 0.0f;           ///< [1] a confirmed track below this dies, < confirm_score
-  int silent_nodes = 1;  ///< [1] nodes with a detection of its own, fewer: the track is silent, >= 1
+  int confirm_frames = 7;           ///< [1] and least age, >= 1
+  int confirm_nodes = 3;            ///< [1] and nodes with a detection of its own, >= 1
+  float confirmed_bonus = 3.0f;     ///< [1] lead of confirmed tracks when detections are claimed, >= 0
+  float shared_score = -0.4f;       ///< [1] of a node whose detection there is another track's, <= 0
+  float max_score = 60.0f;          ///< [1] >= confirm_score
+  float drop_score = 1.0f;          ///< [1] an unconfirmed track below this dies
+  float end_score = 4.0f;           ///< [1] a confirmed track below this dies, < confirm_score
+  int silent_nodes = 3;  ///< [1] nodes with a detection of its own, fewer: the track is silent, >= 1
 };
 
 /// nullptr, or the name of the first member with an impossible value.

@@ -359,7 +359,7 @@ bool RangeTracker::begin_at(const Point& place) {
       ConstantVelocityFilter::State(place.x_m, 0.0f, place.y_m, 0.0f),
       ConstantVelocityFilter::State(position, velocity, position, velocity).asDiagonal());
   const float score = follow(track, false);
-  if (!(score >= config_.birth_score)) return true;
+  if (!(score >= config_.birth_score) || track.n_own == 0) return true;  // 0: where all nodes are blind
   track.score = kBirthShare * score;
   track.id = next_id_;
   if (!tracks_.try_push_back(track)) {

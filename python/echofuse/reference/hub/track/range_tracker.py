@@ -305,7 +305,7 @@ class RangeTracker:
         state = np.array([place_m[0], 0.0, place_m[1], 0.0])
         track = RangeTrack(self.next_id, ConstantVelocityFilter(state, np.diag(variances)))
         score = self._follow(track, False)
-        if not self._decide(score, c.birth_score):
+        if not self._decide(score, c.birth_score) or track.n_own == 0:  # 0: where all nodes are blind
             return False
         track.score = BIRTH_SHARE * score
         self.tracks.append(track)
