@@ -144,6 +144,7 @@ HUB_CHOICES: tuple[Choice, ...] = (
         for kind in ("centroid", "minimum", "maximum")
     ),
     *_one("tracker", "kalman"),
+    Choice(name="tracker=range", settings={"tracker": "range", "ranges.birth_step_m": 0.8}),
     *_one("phd.resampling", "proportional"),
     *_one("phd.mass_average_frames", 3),
     *_one("em.initialisation", "k_means_plus_plus"),

@@ -1,6 +1,6 @@
 """The reference's hub, one call a stage, each from a given input."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from echofuse.reference.hub.measure.measurement_selection import (
 from echofuse.reference.hub.measure.point_clusters import PointClusters, point_clusters
 from echofuse.reference.hub.track.phd_filter import PhdUpdate
 from echofuse.reference.hub.track.phd_tracker import PhdTracker, estimates
+from echofuse.reference.hub.track.range_tracker import RangeStep, RangeTrack
 from echofuse.reference.hub.track.track_manager import Step, Track
 
 Array = NDArray[np.float64]
@@ -139,8 +140,14 @@ class HubReference:
         assert self.hub.kalman is not None
         return self.hub.kalman.process(measurements, dt_s)
 
+    def ranges(self, rows: Array, dt_s: float) -> RangeStep:
+        """Feed the range tracker with the frame tap (n, 3); margins relative to the score to confirm."""
+        assert self.hub.ranges is not None
+        step = self.hub.ranges.process(rows[:, 0].astype(np.int64), rows[:, 1], dt_s)
+        return step._replace(margin=step.margin / self.config.ranges.confirm_score)
 
-def covariances(tracks: list[Track]) -> Array:
+
+def covariances(tracks: Sequence[Track | RangeTrack]) -> Array:
     """Position covariances (n, 3): xx, xy, yy [m^2]."""
     entries = [track.filter.covariance[[0, 0, 2], [0, 2, 2]] for track in tracks]
     return np.array(entries, np.float64).reshape(-1, 3)

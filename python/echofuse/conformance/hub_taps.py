@@ -20,6 +20,7 @@ from echofuse.conformance.hub_reference import HubReference, covariances
 from echofuse.conformance.target import ConformanceTarget, HubAnswer, HubTarget
 from echofuse.reference.hub.hub import peak_rows, track_rows
 from echofuse.reference.hub.measure.frame_assembler import ClosedFrame
+from echofuse.reference.hub.track.range_tracker import RangeStep
 from echofuse.reference.hub.track.track_manager import Step
 
 Array = NDArray[np.float64]
@@ -31,7 +32,7 @@ DEADLINE_US = 90_000  # after an instant: every frame is overdue
 
 def hub_taps(choice: Choice) -> tuple[str, ...]:
     """Return the taps that a hub shows under a choice."""
-    phd = () if choice.settings.get("tracker") == "kalman" else PHD_TAPS
+    phd = PHD_TAPS if choice.settings.get("tracker", "phd") == "phd" else ()
     return (*MEASURE_TAPS, *phd, "tracks")
 
 
@@ -93,11 +94,13 @@ class HubComparison:
         if self.selects or len(self.got["selected"]) <= QUICKLY_CLUSTERED:
             self._points()
         measurements = self.got["points"][:, :2]
-        step = (
-            self._phd(measurements, dt_s)
-            if "peaks" in self.taps
-            else self.reference.kalman(measurements, dt_s)
-        )
+        step: Step | RangeStep
+        if "peaks" in self.taps:
+            step = self._phd(measurements, dt_s)
+        elif self.reference.hub.ranges is not None:
+            step = self.reference.ranges(self.got["frame"], dt_s)
+        else:
+            step = self.reference.kalman(measurements, dt_s)
         self.reference.know(answer.tracks)
         return self._tracks(answer, step)
 
@@ -162,7 +165,7 @@ class HubComparison:
             self._floats(tap, "hub.track.moved", got[:, :4], expected[:, :4])
             self._floats(tap, "hub.track.weight", got[:, 4], expected[:, 4])
 
-    def _tracks(self, answer: HubAnswer, step: Step) -> bool:
+    def _tracks(self, answer: HubAnswer, step: Step | RangeStep) -> bool:
         got, expected = self.got["tracks"], track_rows(step)
         same = self._decisions("tracks", got[:, [0, 1, 6]], expected[:, [0, 1, 6]], step.margin)
         if same:

@@ -78,8 +78,8 @@ class ClutterFilter:
 def shadowed(background: Samples, samples: Samples, window: int) -> Samples:
     """What is left of background (n,) in samples (n,) [count].
 
-    Around each sample, by a triangle of `window` samples, the background and its slope (its quadrature, as it is
-    a band-pass signal) are each fitted to the samples; together they may weaken the background, not strengthen it.
+    Around each sample, by a triangle of `window` samples, the background and its slope (its quadrature, as it
+    is a band-pass signal) are each fitted to the samples; they may weaken the background, not strengthen it.
     """
     padded = np.concatenate([[0.0], background, [0.0]])
     slope = padded[2:] - padded[:-2]
