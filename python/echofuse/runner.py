@@ -32,7 +32,7 @@ def run(options: Namespace) -> int:
     """Simulate a case or a site, process it, and write its folder."""
     if options.seeds is not None:
         return _run_seeds(options)
-    site, name = _site_of_case(options.case)
+    site, name = _site_of_case(options.case, options.people)
     recording = _simulated(site, options.case, options.people, options.seed)
     result = process_recording(recording, site, taps=not options.no_report)
     folder = options.out or Path("runs") / f"{name}-{options.seed}"
@@ -136,9 +136,10 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
 }
 
 
-def _site_of_case(case: str) -> tuple[Site, str]:
+def _site_of_case(case: str, people: int) -> tuple[Site, str]:
+    """Return the case's site; where several people are expected, its settings for them (decision 0004)."""
     if case == "sensor-radar":
-        return example_site("sensor_radar"), case
+        return example_site("sensor_radar" if people <= 1 else "sensor_radar_several"), case
     path = Path(case)
     if path.suffix != ".toml":
         raise InputError(problem(case, "", "a case (sensor-radar) or a site file (SITE.toml)"))
@@ -172,7 +173,7 @@ def _simulated(site: Site, case: str, people: int, seed: int) -> Recording:
 
 def _run_seeds(options: Namespace) -> int:
     """Run many seeds, print one line each and their mean."""
-    site, _ = _site_of_case(options.case)
+    site, _ = _site_of_case(options.case, options.people)
     rows: list[dict[str, float]] = []
     baselines: list[dict[str, float]] = []
     print("seed  " + "  ".join(f"{column:>20s}" for column in SEED_COLUMNS))
