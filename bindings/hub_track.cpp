@@ -193,7 +193,8 @@ void bind_range_tracker(py::module_& m) {
       .field("echo_tail_m", &RangeTrackerConfig::echo_tail_m, "[m]")
       .field("acceleration_density_m2ps3", &RangeTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
       .field("newborn_position_std_m", &RangeTrackerConfig::newborn_position_std_m, "[m] per coordinate")
-      .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps, "[m/s] per coordinate")
+      .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps,
+             "[m/s] per coordinate")
       .field("max_speed_mps", &RangeTrackerConfig::max_speed_mps, "[m/s] of an unconfirmed track")
       .field("birth_step_m", &RangeTrackerConfig::birth_step_m, "[m] of the grid")
       .field("birth_score", &RangeTrackerConfig::birth_score, "least")
