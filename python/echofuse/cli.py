@@ -1,6 +1,7 @@
 """The command line: parses, calls `echofuse.runner`, and turns bad input into one line and exit status 2."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -69,6 +70,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(f"echofuse: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # whoever read the output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except KeyboardInterrupt:
         print("echofuse: interrupted", file=sys.stderr)
         return 130

@@ -2,6 +2,8 @@
 
 import csv
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import h5py
@@ -146,6 +148,18 @@ def test_refusals_name_file_key_and_what_was_expected(
     site.write_text(walk)
     message = failing(capsys, "process", str(run_folder / "recording.h5"), "--site", str(site))
     assert "expected ids of the recording's nodes" in message
+
+
+def test_a_reader_who_leaves_early_sees_no_traceback(tmp_path: Path) -> None:
+    site = tmp_path / "site.toml"
+    site.write_text(example_site("sensor_radar").to_toml())
+    command = [sys.executable, "-u", "-m", "echofuse.cli", "plan", str(site), "--out", str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait() == 1
 
 
 def test_plan_draws_the_site(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
