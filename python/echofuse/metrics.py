@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.evaluation.limits import position_error_bound_m
 from echofuse.evaluation.path import evaluate_path
 from echofuse.evaluation.tracking import evaluate_tracks, true_positions
 from echofuse.recording import NodeRecording, PersonTruth
 from echofuse.result import RunResult
 
-SPEED_OF_LIGHT_MPS = 299_792_458.0
 PATH_MATCH_M = 0.6  # a detection this near a person's path is the person's
 SETTLE_S = 1.0  # of a simulated run; tracks need some frames to begin
 

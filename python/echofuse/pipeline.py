@@ -19,7 +19,6 @@ from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, NodeRecording, Reco
 from echofuse.result import POINT_DTYPE, NodeStack, RunResult
 from echofuse.site import Site, SiteNode, apply_settings
 
-SPEED_OF_LIGHT_MPS = 299_792_458.0
 LAST_DEADLINE_US = 10_000_000  # after the last scan, so that the frames still open close
 
 Taps = dict[str, NDArray[np.float32]]
@@ -101,21 +100,18 @@ class SensorRadar:
             found = ", ".join(str(source.node_id) for source in sources)
             known = ", ".join(map(str, places))
             raise InputError(problem(site.name, "node.id", f"ids of the recording's nodes ({found})", known))
-        self._nodes = [
-            _configured_node(site, places[source.node_id], source) if source.node_id in places else None
-            for source in sources
-        ]
-        # A report's number counts scans; several pulses may make one.
-        self._pulses = [
-            node_config(site, places[source.node_id], source).pulse_integrator.pulses_per_scan
-            if source.node_id in places
-            else 1
-            for source in sources
-        ]
-        config = hub_config(site)
+        self._nodes: list[_core.SensorRadarNode | None] = []
+        self._pulses: list[int] = []  # that make one scan; a report's number counts scans
+        for source in sources:
+            place = places.get(source.node_id)
+            config = None if place is None else node_config(site, place, source)
+            self._nodes.append(None if config is None else _configured_node(site, config, source))
+            self._pulses.append(1 if config is None else config.pulse_integrator.pulses_per_scan)
+        self.hub_config = hub_config(site)
         self.hub = _core.SensorRadarHub()
-        if self.hub.configure(config) != _core.Status.ok:
-            raise InputError(problem(site.name, f"pipeline.{config.invalid_field()}", "a possible value"))
+        if self.hub.configure(self.hub_config) != _core.Status.ok:
+            key = self.hub_config.invalid_field()
+            raise InputError(problem(site.name, f"pipeline.{key}", "a possible value"))
 
     def scan(self, scan: Scan, samples: NDArray[Any], *, taps: bool = False) -> NodeOutput:
         """Give a node its next scan (n_samples,) [count], and the hub what the node reports.
@@ -173,7 +169,7 @@ def process_recording(recording: Recording, site: Site, *, taps: bool = False) -
             )
         )
     radar = SensorRadar(site, recording.nodes)
-    tables = _Tables(recording, hub_config(site).tracks)
+    tables = _Tables(recording, radar.hub_config)
     order = scans_in_time_order(recording.nodes)
     shown = _shown_scan(recording) if taps else -1
     for scan in progress(order, "processing", len(order)):
@@ -190,8 +186,9 @@ def process_recording(recording: Recording, site: Site, *, taps: bool = False) -
     return result
 
 
-def _configured_node(site: Site, place: SiteNode, source: NodeRecording) -> "_core.SensorRadarNode":
-    config = node_config(site, place, source)
+def _configured_node(
+    site: Site, config: "_core.SensorRadarNodeConfig", source: NodeRecording
+) -> "_core.SensorRadarNode":
     node = _core.SensorRadarNode()
     if node.configure(config) != _core.Status.ok:
         key = config.invalid_field()
@@ -218,8 +215,9 @@ def _shown_scan(recording: Recording) -> int:
 class _Tables:
     """Collects the rows of a run."""
 
-    def __init__(self, recording: Recording, tracks: "_core.TrackManagerConfig") -> None:
+    def __init__(self, recording: Recording, config: "_core.SensorRadarHubConfig") -> None:
         self._recording = recording
+        self._frame_period_s = config.frame_period_s
         self._frame_time_us: list[int] = []
         self._points: list[NDArray[np.void]] = []
         self._tracks: list[NDArray[np.void]] = []
@@ -229,8 +227,9 @@ class _Tables:
         self._taps: dict[int, list[Taps]] = {}
         self._shown: dict[str, Taps] = {}
         self._kalman = _core.KalmanTracker()
-        if self._kalman.configure(tracks) != _core.Status.ok:
-            raise InputError(problem("site", f"pipeline.tracks.{tracks.invalid_field()}", "a possible value"))
+        if self._kalman.configure(config.tracks) != _core.Status.ok:
+            key = config.tracks.invalid_field()
+            raise InputError(problem("site", f"pipeline.tracks.{key}", "a possible value"))
 
     def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
         rows = np.zeros(len(output.detections), DETECTION_DTYPE)
@@ -259,7 +258,7 @@ class _Tables:
             points[name] = frame.points[:, column]
         self._points.append(points)
         self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
-        dt_s = 0.1 if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
+        dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
         _, tracks = self._kalman.process(np.ascontiguousarray(frame.points[:, :2]), dt_s)
         self._baseline.append(_track_rows(number, frame.time_us, tracks))
 

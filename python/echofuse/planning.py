@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse import _core
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.errors import InputError, problem
-from echofuse.pipeline import SPEED_OF_LIGHT_MPS, hub_config
+from echofuse.pipeline import hub_config
 from echofuse.site import Site, apply_settings
 from echofuse.site.stages import PlanConfig
 

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
-from echofuse.pipeline import SPEED_OF_LIGHT_MPS, process_recording
+from echofuse.pipeline import process_recording
 from echofuse.recording import Recording, read, write
 from echofuse.result import RunResult
 from echofuse.site import Site, example_site, load_site, parse_site

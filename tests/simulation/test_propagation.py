@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.simulation.people import Scatterers
 from echofuse.simulation.propagation import Obstacle, echo_paths, shadow, static_ways, station
-from echofuse.simulation.radio import SPEED_OF_LIGHT_MPS
 from echofuse.simulation.scene import RadarNode, Room, Scene, sensor_radar_scene
 
 WAVELENGTH_M = SPEED_OF_LIGHT_MPS / 4.3e9

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from echofuse.display import setting, style
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.display import style
 from echofuse.display.room_figure import draw_nodes
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def _draw_one_pair(
     axes.set_title(f"(c) One pair, {name}: Cassini ovals and iso-ToA ellipses")
     place = np.stack(np.meshgrid(x_m, y_m), axis=-1)
     path_m = np.linalg.norm(place - tx_m, axis=-1) + np.linalg.norm(place - rx_m, axis=-1)
-    toa_ns = path_m / setting.SPEED_OF_LIGHT_MPS * 1e9
+    toa_ns = path_m / SPEED_OF_LIGHT_MPS * 1e9
     edges_x, edges_y = _edges(x_m), _edges(y_m)
     axes.fill(
         np.array(edges_x)[[0, 1, 1, 0]],

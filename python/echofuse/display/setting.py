@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+
 if TYPE_CHECKING:
     from echofuse.recording import NodeRecording
     from echofuse.result import RunResult
     from echofuse.site import Site
 
-SPEED_OF_LIGHT_MPS = 299_792_458.0
 MONOSTATIC_WITHIN_M = 0.5  # two antennas of one module stand closer than this
 
 

@@ -6,6 +6,8 @@ See S. M. Kay, Fundamentals of Statistical Signal Processing I, sections 3.11 (r
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+
 __all__ = [
     "SPEED_OF_LIGHT_MPS",
     "bistatic_path_bound_m",
@@ -15,8 +17,6 @@ __all__ = [
     "position_covariance_bound_m2",
     "position_error_bound_m",
 ]
-
-SPEED_OF_LIGHT_MPS = 299_792_458.0
 
 
 def effective_bandwidth_rad_s(pulse: ArrayLike, sample_rate_hz: float) -> float:

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.simulation.people import Scatterers, visibility
-from echofuse.simulation.radio import SPEED_OF_LIGHT_MPS
 from echofuse.simulation.scene import RadarNode, Scene, Surface
 
 Array = NDArray[np.float64]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-SPEED_OF_LIGHT_MPS = 299_792_458.0
 BOLTZMANN_JPK = 1.380649e-23
 REFERENCE_TEMPERATURE_K = 290.0
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from echofuse.simulation.radio import SPEED_OF_LIGHT_MPS, Pulse, Radio
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.simulation.radio import Pulse, Radio
 
 Point = tuple[float, float, float]
 
