@@ -1,5 +1,6 @@
 #include "echofuse/hub/hub.hpp"
 #include "hub.hpp"
+#include "taps.hpp"
 #include "tracks.hpp"
 
 namespace echofuse::bindings {
@@ -8,39 +9,6 @@ namespace {
 using hub::SensorRadarHub;
 using hub::SensorRadarHubConfig;
 using hub::SensorRadarHubCounters;
-
-struct TapLayout {
-  TapId tap;
-  const char* name;
-  std::size_t columns;
-};
-constexpr TapLayout kTapLayouts[] = {
-    {TapId::kFrame, "frame", 3},     {TapId::kSelected, "selected", 5},
-    {TapId::kPoints, "points", 4},   {TapId::kPredicted, "predicted", 5},
-    {TapId::kUpdated, "updated", 5}, {TapId::kResampled, "resampled", 5},
-    {TapId::kPeaks, "peaks", 5},     {TapId::kTracks, "tracks", 7},
-};
-
-/// Copies the taps of one call into a dictionary, each as (n, columns).
-void record_tap(void* context, TapId tap, Span<const float> values) {
-  for (const TapLayout& layout : kTapLayouts) {
-    if (layout.tap != tap) continue;
-    FloatArray rows({values.size() / layout.columns, layout.columns});
-    std::copy(values.begin(), values.end(), rows.mutable_data());
-    (*static_cast<py::dict*>(context))[layout.name] = rows;
-  }
-}
-
-class TapGuard {
- public:
-  TapGuard(SensorRadarHub& hub, py::dict& taps) : hub_(hub) { hub_.set_tap_sink({&record_tap, &taps}); }
-  ~TapGuard() { hub_.set_tap_sink({}); }
-  TapGuard(const TapGuard&) = delete;
-  TapGuard& operator=(const TapGuard&) = delete;
-
- private:
-  SensorRadarHub& hub_;
-};
 
 py::tuple poll(SensorRadarHub& self, std::int64_t now_us) {
   link::Tracks tracks;

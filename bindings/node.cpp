@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common.hpp"
+#include "taps.hpp"
 
 namespace echofuse::bindings {
 namespace {
@@ -204,56 +205,6 @@ void bind_range_clusters(py::module_& m) {
           py::arg("threshold").noconvert(),
           "(status, clusters): inputs (n_samples,); clusters is a structured array.");
 }
-
-const char* tap_name(TapId tap) {
-  switch (tap) {
-    case TapId::kScan:
-      return "scan";
-    case TapId::kEnvelope:
-      return "envelope";
-    case TapId::kDirectPath:
-      return "direct_path";
-    case TapId::kAlignment:
-      return "alignment";
-    case TapId::kAligned:
-      return "aligned";
-    case TapId::kResidual:
-      return "residual";
-    case TapId::kThreshold:
-      return "threshold";
-    case TapId::kDecisions:
-      return "decisions";
-    case TapId::kRangeClusters:
-      return "range_clusters";
-    case TapId::kDetections:
-      return "detections";
-    default:
-      return "unknown";
-  }
-}
-
-py::array_t<float> tap_array(TapId tap, Span<const float> values) {
-  const py::ssize_t columns = tap == TapId::kRangeClusters ? 4 : tap == TapId::kDetections ? 2 : 0;
-  py::array_t<float> array = to_array(values);
-  return columns == 0 ? array : py::array_t<float>(array.reshape({py::ssize_t{-1}, columns}));
-}
-
-/// Takes the sink out again, whatever happens.
-class TapGuard {
- public:
-  TapGuard(SensorRadarNode& node, py::dict& taps) : node_(node) {
-    node_.set_tap_sink({[](void* context, TapId tap, Span<const float> values) {
-                          (*static_cast<py::dict*>(context))[tap_name(tap)] = tap_array(tap, values);
-                        },
-                        &taps});
-  }
-  TapGuard(const TapGuard&) = delete;
-  TapGuard& operator=(const TapGuard&) = delete;
-  ~TapGuard() { node_.set_tap_sink({}); }
-
- private:
-  SensorRadarNode& node_;
-};
 
 py::dict counters(const SensorRadarNode& node) {
   const SensorRadarNodeCounters& counted = node.counters();
