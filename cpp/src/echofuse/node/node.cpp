@@ -144,9 +144,10 @@ Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, li
   (void)envelope_.process(integrated, amplitude);
   taps_(TapId::kEnvelope, amplitude);
   const DirectPath direct_path = find_direct_path(amplitude);
+  tap_direct_path(direct_path);
   if (!direct_path.found && config_.time_zero == TimeZero::kDirectPath) ++counters_.direct_path_missing;
   const signal::Alignment alignment = align(amplitude, direct_path);
-  tap_direct_path(direct_path, alignment);
+  tap_alignment(alignment);
   if (n_empty_room_ == 0 && n_reference_ < config_.clutter.learning_scans)
     learn_reference(amplitude, alignment.shift_samples);
 
@@ -159,6 +160,7 @@ Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, li
   ++counters_.scans;
   if (!reports) ++counters_.learning_scans;
   detect(reports ? usable_range(alignment.shift_samples) : Range{});
+  taps_(TapId::kThreshold, cut(work_));
   const Status status = report(out);
   tap_report(out);
   report_ready_ = true;
@@ -290,34 +292,36 @@ float SensorRadarNode::delay_s(float position_samples) const {
          config_.baseline_m / kSpeedOfLight_mps + config_.delay_offset_s;
 }
 
-void SensorRadarNode::tap_direct_path(const DirectPath& direct_path,
-                                      const signal::Alignment& alignment) const {
-  if (!taps_.enabled()) return;
+void SensorRadarNode::tap_direct_path(const DirectPath& direct_path) const {
+  if (!taps_.wants(TapId::kDirectPath)) return;
   const float path[] = {direct_path.found ? 1.0f : 0.0f, direct_path.toa_samples, direct_path.threshold};
-  const float shift[] = {alignment.shift_samples, alignment.correlation};
   taps_(TapId::kDirectPath, path);
+}
+
+void SensorRadarNode::tap_alignment(const signal::Alignment& alignment) const {
+  if (!taps_.wants(TapId::kAlignment)) return;
+  const float shift[] = {alignment.shift_samples, alignment.correlation};
   taps_(TapId::kAlignment, shift);
 }
 
+/// Overwrites work_, which nobody needs any more.
 void SensorRadarNode::tap_clusters(Span<const std::uint8_t> decisions) {
-  if (!taps_.enabled()) return;
-  taps_(TapId::kThreshold, cut(work_));
-  const Span<float> values = cut(work_);  // free, now that the clusters are made
+  if (!taps_.wants(TapId::kRangeClusters)) return;
+  const Span<float> values = cut(work_);
   for (std::size_t k = 0; k < decisions.size(); ++k) values[k] = static_cast<float>(decisions[k]);
   taps_(TapId::kDecisions, values);
-  float rows[4 * kMaxClustersPerScan];
   std::size_t size = 0;
   for (const RangeCluster& cluster : clusters_) {
-    rows[size++] = cluster.position_samples;
-    rows[size++] = static_cast<float>(cluster.weight);
-    rows[size++] = static_cast<float>(cluster.first_sample);
-    rows[size++] = static_cast<float>(cluster.last_sample);
+    work_[size++] = cluster.position_samples;
+    work_[size++] = static_cast<float>(cluster.weight);
+    work_[size++] = static_cast<float>(cluster.first_sample);
+    work_[size++] = static_cast<float>(cluster.last_sample);
   }
-  taps_(TapId::kRangeClusters, {rows, size});
+  taps_(TapId::kRangeClusters, {work_.data(), size});
 }
 
 void SensorRadarNode::tap_report(const link::Detections& out) const {
-  if (!taps_.enabled()) return;
+  if (!taps_.wants(TapId::kDetections)) return;
   float rows[2 * kMaxDetectionsPerNode];
   std::size_t size = 0;
   for (const link::Detection& detection : out.detections) {
