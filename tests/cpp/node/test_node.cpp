@@ -95,7 +95,8 @@ TEST_CASE("GIVEN a sink WHEN a scan is processed THEN every tap comes once and i
   CHECK(seen.last == static_cast<int>(TapId::kDetections));
 }
 
-TEST_CASE("GIVEN a sink for marks WHEN a scan is processed THEN each stage ends with one, and no tap is prepared") {
+TEST_CASE(
+    "GIVEN a sink for marks WHEN a scan is processed THEN each stage ends with one, and no tap is prepared") {
   SensorRadarNode node;
   REQUIRE(node.configure(config_of()) == Status::kOk);
   REQUIRE(node.set_empty_room(view(scan_of(1, 0.0f))) == Status::kOk);
@@ -111,9 +112,9 @@ TEST_CASE("GIVEN a sink for marks WHEN a scan is processed THEN each stage ends 
       &marks));
   link::Detections report;
   REQUIRE(node.process(view(scan_of(2, 650.0f)), 0, report) == Status::kOk);
-  CHECK(marks.taps == std::vector<TapId>{TapId::kScan, TapId::kEnvelope, TapId::kDirectPath, TapId::kAlignment,
-                                         TapId::kAligned, TapId::kResidual, TapId::kThreshold,
-                                         TapId::kRangeClusters, TapId::kDetections});
+  CHECK(marks.taps == std::vector<TapId>{TapId::kScan, TapId::kEnvelope, TapId::kDirectPath,
+                                         TapId::kAlignment, TapId::kAligned, TapId::kResidual,
+                                         TapId::kThreshold, TapId::kRangeClusters, TapId::kDetections});
   CHECK(marks.values == 0);
   CHECK_FALSE(report.detections.empty());
 }

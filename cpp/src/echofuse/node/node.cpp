@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echofuse/core/constants.hpp"
+#include "echofuse/core/magnitude.hpp"
 
 namespace echofuse::node {
 namespace {
@@ -94,10 +95,7 @@ bool SensorRadarNode::ready() const {
 }
 
 bool SensorRadarNode::usable(Span<const float> scan) const {
-  if (scan.size() != static_cast<std::size_t>(config_.n_samples)) return false;
-  for (const float sample : scan)
-    if (!(std::abs(sample) <= kMaxMagnitude)) return false;
-  return true;
+  return scan.size() == static_cast<std::size_t>(config_.n_samples) && all_within(scan, kMaxMagnitude);
 }
 
 Status SensorRadarNode::set_empty_room(Span<const float> scan) {
@@ -227,8 +225,10 @@ void SensorRadarNode::remove_clutter(Span<const float> scan, float shift_samples
   (void)aligner_.shift(on_envelope ? Span<const float>(amplitude) : scan, shift_samples, aligned);
   taps_(TapId::kAligned, aligned);
   (void)clutter_.process(aligned, on_envelope ? amplitude : aligned);
-  if (!on_envelope) (void)envelope_.process(aligned, amplitude);
-  rectify(amplitude);
+  if (on_envelope)
+    rectify(amplitude);
+  else
+    (void)envelope_.process(aligned, amplitude);  // never negative
 }
 
 /// What lies behind the blind zone and is not touched by what the alignment shifted in at the ends.
@@ -262,6 +262,7 @@ void SensorRadarNode::detect(Range range) {
   const Span<const float> amplitude = cut(amplitude_).subspan(first, count);
   const Span<std::uint8_t> decisions{decisions_.data() + first, count};
   (void)cfar_.process(amplitude, threshold.subspan(first, count), decisions);
+  if (config_.noise_floor.factor == 0.0f) return;  // no floor: all stands as decided
   (void)noise_floor_.process(amplitude, threshold.subspan(first, count));
   for (std::size_t k = 0; k < count; ++k)
     if (amplitude[k] * amplitude[k] <= threshold[first + k]) decisions[k] = 0;
