@@ -10,4 +10,4 @@ set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES ECHOFUSE_CPU ECHOFUSE_FPU)
 string(JOIN " " CMAKE_CXX_FLAGS_INIT
   -mcpu=${ECHOFUSE_CPU} -mthumb -mfpu=${ECHOFUSE_FPU} -mfloat-abi=hard
   -ffunction-sections -fdata-sections -fno-threadsafe-statics -fno-use-cxa-atexit
-  -fno-unwind-tables -fno-asynchronous-unwind-tables)
+  -fno-unwind-tables -fno-asynchronous-unwind-tables -fstack-usage)
