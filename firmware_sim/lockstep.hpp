@@ -13,7 +13,8 @@
 ///                                <----------   (UART or socket) what the firmware sends
 ///                                <----------   TraceHeader kDone + DonePayload: in wait() again
 ///
-/// The emulation reads the link until DonePayload's count, so nothing depends on the wall clock.
+/// The emulation reads the link until DonePayload's count, so nothing depends on the wall clock. It reads link and trace
+/// at once: a board whose link nobody drains waits in send() (a Unix socket holds only 278 bytes that come one by one).
 namespace echofuse::board {
 
 inline constexpr std::uint32_t kStepMagic = 0x50455453;   ///< "STEP"
