@@ -41,6 +41,7 @@ class Endpoint {
   std::uint16_t node_id() const { return identity_.node_id; }
   Ports& ports() { return identity_.ports; }
   RegisterServer& registers() { return registers_; }
+  const RegisterServer& registers() const { return registers_; }
   const FrameCounters& received() const { return reader_.counters(); }
   std::uint32_t unsent() const { return unsent_; }
 

@@ -15,6 +15,7 @@ enum class RegisterType : std::uint8_t {
   kNatural8,   ///< an enumeration or std::uint8_t
   kNatural16,  ///< std::uint16_t
   kNatural32,  ///< std::uint32_t
+  kNatural64,  ///< std::uint64_t
   kInteger32,  ///< std::int32_t, int
   kReal32,     ///< float, `count` of them in a row
   kString,     ///< const char*, never written
@@ -33,22 +34,24 @@ struct RegisterField {
 
 template <class T>
 constexpr RegisterType register_type() {
+  static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, const char*>);
+  static_assert(!(std::is_integral_v<T> && std::is_signed_v<T>) || sizeof(T) == 4);
+  static_assert(!std::is_enum_v<T> || sizeof(T) == 1);
+  static_assert(!std::is_same_v<T, double>);
   if constexpr (std::is_same_v<T, bool>)
     return RegisterType::kBit;
-  else if constexpr (std::is_enum_v<T> || std::is_same_v<T, std::uint8_t>)
-    return RegisterType::kNatural8;
-  else if constexpr (std::is_same_v<T, std::uint16_t>)
-    return RegisterType::kNatural16;
-  else if constexpr (std::is_same_v<T, std::uint32_t>)
-    return RegisterType::kNatural32;
   else if constexpr (std::is_same_v<T, float>)
     return RegisterType::kReal32;
   else if constexpr (std::is_same_v<T, const char*>)
     return RegisterType::kString;
-  else {
-    static_assert(std::is_same_v<T, std::int32_t>, "no register type for this member");
+  else if constexpr (sizeof(T) == 1)
+    return RegisterType::kNatural8;
+  else if constexpr (std::is_signed_v<T>)
     return RegisterType::kInteger32;
-  }
+  else if constexpr (sizeof(T) == 2)
+    return RegisterType::kNatural16;
+  else
+    return sizeof(T) == 4 ? RegisterType::kNatural32 : RegisterType::kNatural64;
 }
 
 /// A member of a structure, also of one within it, under its own name: ECHOFUSE_REGISTER(NodeConfig, cfar.global_factor)

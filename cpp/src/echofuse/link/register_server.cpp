@@ -68,6 +68,9 @@ void read_value(const RegisterField& field, const std::uint8_t* from, Value& out
     case RegisterType::kNatural32:
       uavcan_register_Value_1_0_select_natural32_(&out);
       return read_array(from, field.count, out.natural32);
+    case RegisterType::kNatural64:
+      uavcan_register_Value_1_0_select_natural64_(&out);
+      return read_array(from, field.count, out.natural64);
     case RegisterType::kInteger32:
       uavcan_register_Value_1_0_select_integer32_(&out);
       return read_array(from, field.count, out.integer32);
@@ -93,6 +96,8 @@ bool write_value(const RegisterField& field, const Value& value, std::uint8_t* t
       return uavcan_register_Value_1_0_is_natural16_(&value) && write_array(value.natural16, field.count, to);
     case RegisterType::kNatural32:
       return uavcan_register_Value_1_0_is_natural32_(&value) && write_array(value.natural32, field.count, to);
+    case RegisterType::kNatural64:
+      return uavcan_register_Value_1_0_is_natural64_(&value) && write_array(value.natural64, field.count, to);
     case RegisterType::kInteger32:
       return uavcan_register_Value_1_0_is_integer32_(&value) && write_array(value.integer32, field.count, to);
     case RegisterType::kReal32:
