@@ -1,7 +1,7 @@
 """The deepest stack that an image can need: frames from its disassembly, joined along its calls.
 
-The compiler's own figures (-fstack-usage) leave out the C library and know no call graph; the frames found here
-are checked against them.
+The compiler's own figures (-fstack-usage) leave out the C library and know no call graph; what is found
+here is compared with them.
 """
 
 import re
@@ -66,10 +66,9 @@ def _read(function: Function, name: str, operation: str, operands: str) -> None:
         function.frame_bytes += int(moved[1])
     elif plain == "blx" or (plain == "bx" and operands != "lr"):
         function.indirect = True
-    elif (
-        _BRANCH.match(operation) and (target := _TARGET.match(operands)) and (target[1], plain) != (name, "b")
-    ):
-        function.calls.add(target[1])
+    elif _BRANCH.match(operation) and (target := _TARGET.match(operands)):  # noqa: SIM102
+        if plain == "bl" or target[1] != name:  # else it is a loop
+            function.calls.add(target[1])
 
 
 @dataclass(frozen=True)
