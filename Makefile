@@ -2,6 +2,7 @@
 #   demo       build, run the case study of the sensor radar, write demo/report.html
 #   build      the Python package with its C++ core, as .venv/bin/echofuse
 #   firmware   the bare-metal images, into build/cortex-m7 (and build/cortex-m4, which proves that a smaller core will do)
+#   budgets    measures the images, prints README's table, and makes its figures the budgets of tests/firmware
 #   test       everything: C++, Python, then C++ again under the sanitizers
 #   test-fast  C++ and the quick part of Python, under three minutes
 #   bench      C++ against the NumPy reference
@@ -20,7 +21,7 @@ SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings pyt
              \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
 CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
 
-.PHONY: demo build firmware test test-fast test-cpp bench lint stubs clean distclean
+.PHONY: demo build firmware budgets test test-fast test-cpp bench lint stubs clean distclean
 
 demo: build
 	.venv/bin/echofuse run sensor-radar --out demo
@@ -44,6 +45,9 @@ firmware: .venv/.setup-firmware
 	cmake --build --preset cortex-m7
 	cmake --preset cortex-m4 >/dev/null
 	cmake --build --preset cortex-m4
+
+budgets: build firmware
+	$(PYTHON) tests/firmware/measure.py --update
 
 test-cpp: .venv/.setup-test
 	cmake --preset host >/dev/null

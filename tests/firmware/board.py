@@ -60,10 +60,10 @@ class Board:
         trace: Trace = []
         while True:
             magic, sequence, kind, identity, _, n_bytes = struct.unpack("<IIBBHI", self._read(16))
-            assert (magic, sequence) == (TRACE_MAGIC, self._sequence)
             payload = self._read(n_bytes)
             if kind == FAULT:
                 raise RuntimeError(payload.decode().strip())
+            assert (magic, sequence) == (TRACE_MAGIC, self._sequence)
             if kind == DONE:
                 return trace
             trace.append((kind, identity, payload))
@@ -71,7 +71,8 @@ class Board:
     def _read(self, size: int) -> bytes:
         data = b""
         while len(data) < size:
-            if not select.select([self._trace], [], [], 0.5 if self._process.poll() is not None else TIMEOUT_S)[0]:
+            patience_s = TIMEOUT_S if self._process.poll() is None else 0.5
+            if not select.select([self._trace], [], [], patience_s)[0]:
                 raise RuntimeError(f"the board is silent since step {self._sequence}")
             data += os.read(self._trace, size - len(data))
         return data

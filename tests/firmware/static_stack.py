@@ -1,7 +1,7 @@
 """The deepest stack that an image can need: frames from its disassembly, joined along its calls.
 
-The compiler's own figures (-fstack-usage) leave out the C library and know no call graph; they are what the frames found here
-are checked against.
+The compiler's own figures (-fstack-usage) leave out the C library and know no call graph; what is found
+here is compared with them.
 """
 
 import re
@@ -14,7 +14,6 @@ _FUNCTION = re.compile(r"^[0-9a-f]{8} <(.+)>:$")
 _INSTRUCTION = re.compile(r"^ *[0-9a-f]+:\t(\S+)(?:\t(.*))?$")
 _TARGET = re.compile(r"^[0-9a-f]+ <([^+>]+)>$")
 _BRANCH = re.compile(r"^(bl|b|b[a-z]{2})(\.[nw])?$")
-_NEEDED_BY_NOBODY = "?"
 
 
 @dataclass
@@ -40,7 +39,8 @@ def functions(image: Path) -> dict[str, Function]:
             name = start[1]
             found[name] = Function()
         elif name and (instruction := _INSTRUCTION.match(line)):
-            _read(found[name], name, instruction[1], (instruction[2] or "").split("\t@")[0].split(" @")[0].strip())
+            operands = re.split(r"[\t ]@", instruction[2] or "")[0].strip()  # without the comment
+            _read(found[name], name, instruction[1], operands)
     return found
 
 
@@ -62,12 +62,13 @@ def _read(function: Function, name: str, operation: str, operands: str) -> None:
         amount = re.search(r"#(\d+)$", operands)
         function.frame_bytes += int(amount[1]) if amount else 0
         function.dynamic |= amount is None
-    elif re.search(r"\[sp, #-(\d+)\]!", operands) and plain.startswith(("str", "vstr")):
-        function.frame_bytes += int(re.search(r"\[sp, #-(\d+)\]!", operands)[1])  # type: ignore[index]
+    elif plain.startswith(("str", "vstr")) and (moved := re.search(r"\[sp, #-(\d+)\]!", operands)):
+        function.frame_bytes += int(moved[1])
     elif plain == "blx" or (plain == "bx" and operands != "lr"):
         function.indirect = True
-    elif _BRANCH.match(operation) and (target := _TARGET.match(operands)) and (target[1] != name or plain == "bl"):
-        function.calls.add(target[1])
+    elif _BRANCH.match(operation) and (target := _TARGET.match(operands)):  # noqa: SIM102
+        if plain == "bl" or target[1] != name:  # else it is a loop
+            function.calls.add(target[1])
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,8 @@ class Depth:
 def deepest(found: dict[str, Function], root: str, indirect: dict[str, Sequence[str]]) -> Depth:
     """Follow the calls from root.
 
-    indirect: who calls through a pointer (a regular expression on the symbol), and whom (symbols' expressions too).
-    Raises ValueError for a call through a pointer that is not listed, for recursion, and for a frame of unknown size.
+    indirect: who calls through a pointer, and whom: regular expressions on symbols.
+    Raises ValueError for a call through a pointer that is not listed, recursion, or a frame of unknown size.
     """
     known: dict[str, Depth] = {}
     under_way: list[str] = []
@@ -106,7 +107,8 @@ def deepest(found: dict[str, Function], root: str, indirect: dict[str, Sequence[
         if found[name].dynamic:
             raise ValueError(f"{name} has a frame of unknown size")
         under_way.append(name)
-        below = max((visit(callee) for callee in sorted(targets(name))), key=lambda d: d.n_bytes, default=Depth(0, ()))
+        depths = [visit(callee) for callee in sorted(targets(name))]
+        below = max(depths, key=lambda depth: depth.n_bytes, default=Depth(0, ()))
         under_way.pop()
         known[name] = Depth(found[name].frame_bytes + below.n_bytes, (name, *below.path))
         return known[name]
@@ -130,7 +132,7 @@ def compilers_frames(build: Path) -> dict[str, set[int]]:
 
 
 def plain_name(signature: str) -> str:
-    """Reduce a signature to its qualified name: neither the compiler nor c++filt writes types like the other."""
+    """Reduce a signature to its qualified name: the compiler and c++filt write types differently."""
     text = signature.replace("(anonymous namespace)", "{anonymous}").replace("::{anonymous}", "")
     depth, head = 0, ""
     for letter in text:

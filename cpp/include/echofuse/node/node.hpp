@@ -142,7 +142,8 @@ class SensorRadarNode {
   BoundedVector<RangeCluster, kMaxClustersPerScan> clusters_;
 };
 
-static_assert(4 * kMaxClustersPerScan <= kMaxSamplesPerScan, "the clusters' tap is prepared in a scan's place");
+static_assert(4 * kMaxClustersPerScan <= kMaxSamplesPerScan,
+              "the clusters' tap is prepared in a scan's place");
 
 static_assert(sizeof(SensorRadarNode) <= 80 * 1024, "a node's RAM budget");
 

@@ -8,7 +8,8 @@
 namespace echofuse::signal {
 namespace {
 
-constexpr int kTile = 8;  ///< neighbouring sums made at once: as many accumulators and samples fit into 32 registers
+constexpr int kTile =
+    8;  ///< neighbouring sums made at once: as many accumulators and samples fit into 32 registers
 constexpr int kProductsPerBlock = 64;  ///< partial sums keep the rounding error of a float sum small
 
 constexpr float kLeastFraction = 1e-7f;  ///< [sample] less than float32 can tell from 0 beside 1
@@ -107,7 +108,7 @@ void correlate(Span<const float> envelope, Span<const float> reference, Range ra
                        inside(range, shift + kTile - 1, n_samples).last};
     if (common.first >= common.last) break;
     add_products_at_shifts(envelope.data() + (common.first + shift), reference.data() + common.first,
-                             common.last - common.first, products + i);
+                           common.last - common.first, products + i);
     for (int j = 0; j < kTile; ++j) {
       const Range own = inside(range, shift + j, n_samples);
       add_range(envelope, reference, {own.first, common.first}, shift + j, products + i + j);
@@ -241,7 +242,8 @@ Status Aligner::shift(Span<const float> input, float shift_samples, Span<float> 
   }
   const Range inner = inside({0, n_samples}, offset, n_samples - n_taps + 1);  // all taps inside the input
   int k = 0;
-  for (; k < std::min(inner.first, n_samples); ++k) output[static_cast<std::size_t>(k)] = at_end(input, taps, n_taps, k + offset);
+  for (; k < std::min(inner.first, n_samples); ++k)
+    output[static_cast<std::size_t>(k)] = at_end(input, taps, n_taps, k + offset);
   for (; k + kTile <= inner.last; k += kTile)
     filter_tile(input.data() + (k + offset), taps.data(), n_taps, output.data() + k);
   for (; k < n_samples; ++k) output[static_cast<std::size_t>(k)] = at_end(input, taps, n_taps, k + offset);

@@ -8,7 +8,7 @@
 namespace echofuse::signal {
 namespace {
 
-constexpr int kTile = 8;  ///< neighbouring samples made at once
+constexpr int kTile = 8;       ///< neighbouring samples made at once
 constexpr int kUsualTaps = 6;  ///< half length 11 or 12
 
 bool is_half_length(int value) { return value >= 1 && value <= static_cast<int>(kMaxFilterHalfLength); }
