@@ -80,7 +80,7 @@ def node_config(site: Site, place: SiteNode, source: NodeRecording) -> "_core.Se
 
 
 def nominal_source(place: SiteNode) -> NodeRecording:
-    """Return a node that has recorded nothing yet, with the C++ structure's own scan length and sample rate."""
+    """Return a node that has recorded nothing yet, with the default scan length and sample rate."""
     nominal = _core.SensorRadarNodeConfig()
     return NodeRecording(
         name=place.name,
@@ -187,7 +187,7 @@ def process_recording(
     target: str = "inprocess",
     processor: "Processor | None" = None,
 ) -> RunResult:
-    """Run a recording through its pipeline on a target; with `taps`, keep the stages for the report's pictures.
+    """Run a recording through its pipeline on a target; with `taps`, keep the stages for the report.
 
     processor: what turns a Cortex-M7's instructions into time.
     """

@@ -1,6 +1,6 @@
 """A site on firmware, with the same site in this process beside it: what differs between the two is counted.
 
-The pictures' taps and the baseline's points come from the process, everything that a run reports from the firmware.
+The pictures' taps and the baseline's points come from the process, all that a run reports from the firmware.
 """
 
 import math
@@ -153,7 +153,7 @@ class EmulatedRadar:
             found[f"{prefix}ram_bytes"] = size.ram_bytes
             found[f"{prefix}flash_bytes"] = size.flash_bytes
             found[f"{prefix}stack_bytes"] = max(stacks[role], default=0)
-            found[f"{prefix}time_max_s"] = processor.time_s(found[f"{prefix}instructions_max"])
+            found[f"{prefix}time_max_s"] = float(processor.time_s(instructions[role]).max(initial=0.0))
         found["frame_period_s"] = self._frame_period_s()
         found["deadlines_missed"] = sum(
             int(np.count_nonzero(processor.time_s(instructions[role]) > found["frame_period_s"]))

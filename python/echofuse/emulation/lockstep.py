@@ -1,7 +1,7 @@
 """Steps one emulated board: its front-end and trace through named pipes, its link through a Unix socket.
 
-Twin of `firmware_sim/lockstep.hpp`, whose comment says who sends what when. Nothing here depends on the wall clock but
-the limit after which a wait is given up, and then the error names who waited for what.
+Twin of `firmware_sim/lockstep.hpp`, whose comment says who sends what when. Nothing here depends on the wall
+clock but the limit after which a wait is given up, and then the error names who waited for what.
 """
 
 import os
@@ -36,7 +36,7 @@ PATIENCE_S = 30.0  # a step of the slowest board takes less than one second
 
 
 class BoardError(TargetError):
-    """A board that ended, broke a promise, or did not answer in time; the message says which and what was waited for."""
+    """A board that ended, broke a promise, or did not answer in time; it says what was waited for."""
 
 
 class Places(NamedTuple):
