@@ -10,7 +10,6 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from board import Board
 from material import case_study
@@ -99,19 +98,18 @@ def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
 
 
 def test_a_scan_costs_the_same_in_every_run() -> None:
-    node, _ = case_study()
+    node = case_study()[0][0]
     image = BUILD / "tests/firmware/images/node_pipeline.elf"
     assert run(image, node).totals == run(image, node).totals
 
 
-def test_the_bare_node_sees_what_this_process_sees() -> None:
-    node, _ = case_study()
+@pytest.mark.parametrize("which", range(6))
+def test_the_bare_node_sees_what_this_process_sees(which: int) -> None:
+    """To the last bit: single precision is the same everywhere, and no decision hangs on the C library."""
+    node = case_study()[0][which]
     answers = run(BUILD / "tests/firmware/images/node_pipeline.elf", node).answers
-    assert len(answers) == len(node.expected)
-    for ours, theirs in zip(node.expected, answers, strict=True):
-        expected, got = (np.frombuffer(rows, "<f4").reshape(-1, 2) for rows in (ours, theirs))
-        np.testing.assert_array_equal(got[:, 1], expected[:, 1])
-        np.testing.assert_allclose(got[:, 0], expected[:, 0], rtol=0.0, atol=1e-12)
+    assert len(answers) == 61
+    assert answers == node.expected
 
 
 def test_a_board_out_of_step_says_so_and_stops(tmp_path: Path) -> None:
@@ -130,7 +128,7 @@ def test_growing_out_of_the_stack_is_a_fault(tmp_path: Path) -> None:
     assert stack_top == 0x20000000 + 4096
     small = tmp_path / "small.elf"
     small.write_bytes(data)
-    node, _ = case_study()
+    node = case_study()[0][0]
     with Board(small, tmp_path) as board:
         board.step(node.settings)
         with pytest.raises(RuntimeError, match="stack overflow"):
