@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from echofuse import _core
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.pipeline import SensorRadar, node_config, scans_in_time_order
 from echofuse.simulation.scene import sensor_radar_scene
@@ -14,6 +15,14 @@ from echofuse.site import example_site
 
 Values = NDArray[np.float32]
 PERIOD_US = 100_000
+TRACK_LAYOUT = np.dtype(  # of link::Track in memory
+    [("id", "<i4"), ("state", "u1"), ("frames_since_update", "<i4"), ("x_m", "<f4"), ("y_m", "<f4")]
+    + [
+        (name, "<f4")
+        for name in ("vx_mps", "vy_mps", "covariance_xx_m2", "covariance_xy_m2", "covariance_yy_m2")
+    ],
+    align=True,
+)
 
 
 @dataclass
@@ -46,7 +55,28 @@ def case_study() -> tuple[list[Feed], Feed]:
         reports[scan.index] += [recording.nodes[scan.node].node_id, scan.index, len(pairs) // 2, *pairs]
         nodes[scan.node].expected.append(np.array(pairs, "<f4").tobytes())
     hub.steps = [np.array(report, np.float32) for report in reports]
+    hub.expected = _tracks(radar.hub_config, hub.steps)
     return nodes, hub
+
+
+def _tracks(config: "_core.SensorRadarHubConfig", steps: list[Values]) -> list[bytes]:
+    pipeline = _core.SensorRadarHub()
+    assert pipeline.configure(config) == _core.Status.ok
+    expected = []
+    for index, values in enumerate(steps):
+        now_us, at = (index + 1) * PERIOD_US, 0
+        while at < len(values):
+            node_id, frame, count = map(int, values[at : at + 3])
+            pairs = values[at + 3 : at + 3 + 2 * count].reshape(count, 2)
+            delay_s, weight = (np.ascontiguousarray(column) for column in pairs.T)
+            pipeline.receive(node_id, frame, delay_s, weight, now_us)
+            at += 3 + 2 * count
+        _, (_, _, tracks), _ = pipeline.poll_with_taps(now_us)
+        rows = np.zeros(len(tracks), TRACK_LAYOUT)
+        for name in tracks.dtype.names:
+            rows[name] = tracks[name]
+        expected.append(rows.tobytes())
+    return expected
 
 
 def crowd(n_nodes: int, n_people: int, n_frames: int = 12) -> Feed:

@@ -10,9 +10,10 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from board import Board
-from material import case_study
+from material import TRACK_LAYOUT, case_study
 from measure import BUDGETS, BUILD, TOLERANCE, heap_symbols, limits, measure, run
 from static_stack import Function, compilers_frames, deepest, functions, plain_name
 
@@ -110,6 +111,15 @@ def test_the_bare_node_sees_what_this_process_sees(which: int) -> None:
     answers = run(BUILD / "tests/firmware/images/node_pipeline.elf", node).answers
     assert len(answers) == 61
     assert answers == node.expected
+
+
+def test_the_bare_hub_tracks_what_this_process_tracks() -> None:
+    hub = case_study()[1]
+    answers = run(BUILD / "tests/firmware/images/hub_pipeline.elf", hub).answers
+    assert len(answers) == 61
+    assert max(map(len, answers)) > 0
+    for theirs, ours in zip(answers, hub.expected, strict=True):
+        assert np.frombuffer(theirs, TRACK_LAYOUT).tolist() == np.frombuffer(ours, TRACK_LAYOUT).tolist()
 
 
 def test_a_board_out_of_step_says_so_and_stops(tmp_path: Path) -> None:
