@@ -1,6 +1,5 @@
 #include "echofuse/hub/registers.hpp"
 
-#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -19,7 +18,7 @@ constexpr link::RegisterField of_each_node(link::RegisterField field) {
   return field;
 }
 
-constexpr std::array kFields{
+constexpr link::RegisterField kFields[] = {
     FIELD(n_nodes),
     FIELD(frame_period_s),
     FIELD(aid_missed_frames),
