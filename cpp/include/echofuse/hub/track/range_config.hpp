@@ -25,13 +25,13 @@ struct RangeTrackerConfig {
   // Other detections, per metre of path, by how far they are behind a person; > 0.
   float clutter_ahead_per_m = 0.01f;  ///< [1/m] behind nobody
   float clutter_near_per_m = 0.55f;   ///< [1/m] up to far_m: the same body, floor, walls
-  float clutter_far_per_m = 0.2f;     ///< [1/m] further
+  float clutter_far_per_m = 0.25f;    ///< [1/m] further
   float far_m = 3.5f;                 ///< [m] >= 0
   float ahead_m = 0.3f;               ///< [m] a detection so far ahead of a person is behind him yet, >= 0
   // Who is there: the set of tracks that explains the last frames best.
   int window_frames = 15;        ///< [1] in [1, kMaxWindowFrames]
-  float newcomer_cost = 30.0f;   ///< [1] by which one more person has to explain the window better, >= 0
-  float lasting_score = 50.0f;   ///< [1] for as many people as before, >= 0
+  float newcomer_cost = 40.0f;   ///< [1] by which one more person has to explain the window better, >= 0
+  float lasting_score = 65.0f;   ///< [1] for as many people as before, >= 0
   float identity_score = 5.0f;   ///< [1] for each who was there before, >= 0
   int confirm_frames = 5;        ///< [1] least age of a track that joins, >= 1
   int silent_nodes = 3;  ///< [1] nodes with a detection of its own, fewer: the track is silent, >= 1
