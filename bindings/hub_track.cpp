@@ -182,23 +182,32 @@ void bind_range_tracker(py::module_& m) {
   using hub::RangeTrackerConfig;
   ConfigBinder<RangeTrackerConfig>(m, "RangeTrackerConfig", "Tracks from the nodes' paths; scores are logs.")
       .field("detection_probability", &RangeTrackerConfig::detection_probability, "in the clear")
-      .field("far_detection_probability", &RangeTrackerConfig::far_detection_probability, "in the clear, more than far_m behind the first")
-      .field("shadowed_detection_probability", &RangeTrackerConfig::shadowed_detection_probability, "with somebody in the way")
-      .field("far_shadowed_detection_probability", &RangeTrackerConfig::far_shadowed_detection_probability, "with somebody in the way, far")
-      .field("shadow_radius_m", &RangeTrackerConfig::shadow_radius_m, "[m] nearer to a leg, somebody is in the way")
+      .field("far_detection_probability", &RangeTrackerConfig::far_detection_probability,
+             "in the clear, more than far_m behind the first")
+      .field("shadowed_detection_probability", &RangeTrackerConfig::shadowed_detection_probability,
+             "with somebody in the way")
+      .field("far_shadowed_detection_probability", &RangeTrackerConfig::far_shadowed_detection_probability,
+             "with somebody in the way, far")
+      .field("shadow_radius_m", &RangeTrackerConfig::shadow_radius_m,
+             "[m] nearer to a leg, somebody is in the way")
       .field("penumbra_m", &RangeTrackerConfig::penumbra_m, "[m] nearer, half in the way")
       .field("path_scale_m", &RangeTrackerConfig::path_scale_m, "[m] mean deviation")
       .field("path_std_m", &RangeTrackerConfig::path_std_m, "[m] of the filters")
-      .field("visible_path_m", &RangeTrackerConfig::visible_path_m, "[m] behind the direct path; nobody is seen nearer")
-      .field("nearest_path_m", &RangeTrackerConfig::nearest_path_m, "[m] behind the direct path the nearest detections are")
-      .field("shared_path_m", &RangeTrackerConfig::shared_path_m, "[m] two people nearer in path may be one detection")
+      .field("visible_path_m", &RangeTrackerConfig::visible_path_m,
+             "[m] behind the direct path; nobody is seen nearer")
+      .field("nearest_path_m", &RangeTrackerConfig::nearest_path_m,
+             "[m] behind the direct path the nearest detections are")
+      .field("shared_path_m", &RangeTrackerConfig::shared_path_m,
+             "[m] two people nearer in path may be one detection")
       .field("shared_score", &RangeTrackerConfig::shared_score, "of the one without")
       .field("gate_m", &RangeTrackerConfig::gate_m, "[m] of path")
       .field("clutter_ahead_per_m", &RangeTrackerConfig::clutter_ahead_per_m, "[1/m] behind nobody")
-      .field("clutter_near_per_m", &RangeTrackerConfig::clutter_near_per_m, "[1/m] up to far_m behind somebody")
+      .field("clutter_near_per_m", &RangeTrackerConfig::clutter_near_per_m,
+             "[1/m] up to far_m behind somebody")
       .field("clutter_far_per_m", &RangeTrackerConfig::clutter_far_per_m, "[1/m] further")
       .field("far_m", &RangeTrackerConfig::far_m, "[m]")
-      .field("ahead_m", &RangeTrackerConfig::ahead_m, "[m] a detection so far ahead of a person is behind him yet")
+      .field("ahead_m", &RangeTrackerConfig::ahead_m,
+             "[m] a detection so far ahead of a person is behind him yet")
       .field("window_frames", &RangeTrackerConfig::window_frames, "that a set of people is judged by")
       .field("newcomer_cost", &RangeTrackerConfig::newcomer_cost, "by which one more has to explain better")
       .field("lasting_score", &RangeTrackerConfig::lasting_score, "for as many people as before")
@@ -207,7 +216,8 @@ void bind_range_tracker(py::module_& m) {
       .field("silent_nodes", &RangeTrackerConfig::silent_nodes, "fewer with a detection: silent")
       .field("acceleration_density_m2ps3", &RangeTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
       .field("newborn_position_std_m", &RangeTrackerConfig::newborn_position_std_m, "[m] per coordinate")
-      .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps, "[m/s] per coordinate")
+      .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps,
+             "[m/s] per coordinate")
       .field("max_speed_mps", &RangeTrackerConfig::max_speed_mps, "[m/s] of an unconfirmed track")
       .field("candidate_detection_probability", &RangeTrackerConfig::candidate_detection_probability)
       .field("candidate_clutter_per_m", &RangeTrackerConfig::candidate_clutter_per_m, "[1/m]")

@@ -35,7 +35,7 @@ class PeopleLikelihood {
 
   /// A detection that is a person's, and how sure that is.
   struct Claim {
-    int detection = -1;  ///< into the frame's, or -1
+    int detection = -1;     ///< into the frame's, or -1
     float sureness = 0.0f;  ///< [1] probability that it is hers
   };
 
@@ -85,7 +85,8 @@ class PeopleLikelihood {
 
   Span<const float> paths(std::size_t slot, std::size_t node) const;
   void gather(People people, std::size_t slot, std::size_t node, Scene& scene) const;
-  int visibility(People people, const Member& member, std::size_t slot, std::size_t node, float first_m) const;
+  int visibility(People people, const Member& member, std::size_t slot, std::size_t node,
+                 float first_m) const;
   void associate(Span<const float> paths_m, Scene& scene) const;
   bool shares(const Scene& scene, const Member& member) const;
   float log_clutter(float path_m, const Scene& scene) const;

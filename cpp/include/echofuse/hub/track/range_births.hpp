@@ -15,9 +15,10 @@ namespace echofuse::hub {
 /// Logarithm of how much likelier a node's detection of somebody is with her there than as clutter, for one
 /// person by herself. A node that misses her counts no less than a detection that is far off.
 struct LoneScore {
-  float hit_at_std;  ///< [1] of a detection on the path, for a deviation of 1 m
-  float missed;      ///< [1]
+  float hit_at_std = 0.0f;  ///< [1] of a detection on the path, for a deviation of 1 m
+  float missed = 0.0f;      ///< [1]
 
+  LoneScore() = default;
   explicit LoneScore(const RangeTrackerConfig& config);
   float operator()(float error_m, float std_m, float log_std) const;
 };
@@ -53,7 +54,9 @@ class RangeBirths {
   float step_m_ = 0.0f;
   int columns_ = 0;
   int rows_ = 0;
-  float std_m_ = 0.0f;            ///< [m] of a path at the nearest grid point
+  float std_m_ = 0.0f;  ///< [m] of a path at the nearest grid point
+  float log_std_ = 0.0f;
+  LoneScore lone_;
   std::array<float, kMaxCells> cells_{};  ///< (columns, rows) scores
 };
 

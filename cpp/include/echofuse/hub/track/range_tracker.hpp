@@ -79,6 +79,7 @@ class RangeTracker {
   PeopleLikelihood likelihood_;
   PeopleSearch search_;
   RangeBirths births_;
+  LoneScore lone_;
   BoundedVector<RangeTrack, kMaxTracks> tracks_;  ///< the confirmed ones first, then by descending score
 };
 

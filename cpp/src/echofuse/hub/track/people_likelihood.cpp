@@ -236,7 +236,8 @@ void PeopleLikelihood::claim(People people, Span<const float> stds_m, std::size_
     if (member.detection < 0) continue;
     const float probability = probability_[static_cast<std::size_t>(member.visibility)];
     const float std_m = stds_m[member.index];
-    const float deviations = (paths(node)[static_cast<std::size_t>(member.detection)] - member.path_m) / std_m;
+    const float deviations =
+        (paths(node)[static_cast<std::size_t>(member.detection)] - member.path_m) / std_m;
     const float own = probability * std::exp(-0.5f * deviations * deviations) / (kSqrtTwoPi * std_m);
     const float other = (1.0f - probability) * config_.clutter_near_per_m;
     claims[member.index] = {member.detection, own / (own + other)};

@@ -50,6 +50,8 @@ void RangeBirths::configure(const RangeTrackerConfig& config, const Area& area, 
   columns_ = cells(width);
   rows_ = cells(height);
   std_m_ = std::sqrt(config.path_std_m * config.path_std_m + kGridVariance * step_m_ * step_m_);
+  log_std_ = std::log(std_m_);
+  lone_ = LoneScore(config);
 }
 
 Point RangeBirths::place(int column, int row) const {
@@ -59,9 +61,7 @@ Point RangeBirths::place(int column, int row) const {
 
 /// As soon as the birth score is out of reach, the lowest number: no other cell needs to know more.
 float RangeBirths::cell_score(const PeopleLikelihood& likelihood, const Point& place) const {
-  const LoneScore lone(config_);
-  const float log_std = std::log(std_m_);
-  const float most = std::max(lone.hit_at_std - log_std, 0.0f);
+  const float most = std::max(lone_.hit_at_std - log_std_, 0.0f);
   float score = 0.0f;
   float left = static_cast<float>(n_nodes_);
   for (std::size_t node = 0; node < n_nodes_; ++node, left -= 1.0f) {
@@ -70,7 +70,7 @@ float RangeBirths::cell_score(const PeopleLikelihood& likelihood, const Point& p
     if (path < 0.0f) continue;
     const Span<const float> paths = likelihood.paths(node);
     const int own = nearest(paths, path, kGateStds * std_m_);
-    score += own < 0 ? lone.missed : lone(paths[static_cast<std::size_t>(own)] - path, std_m_, log_std);
+    score += own < 0 ? lone_.missed : lone_(paths[static_cast<std::size_t>(own)] - path, std_m_, log_std_);
   }
   return score;
 }

@@ -12,14 +12,14 @@ namespace {
 
 using estimation::ConstantVelocityFilter;
 
-constexpr float kOutside_m = 0.2f;        ///< [m] a track may leave the area by so much
-constexpr float kDouble_m = 0.3f;         ///< [m] two confirmed tracks nearer than this
-constexpr float kDouble_mps = 0.7f;       ///< [m/s] and alike in velocity are one person
-constexpr float kBirthShare = 0.5f;       ///< [1] of a birth's score that it keeps: the place was chosen for it
-constexpr float kDemotedScore = 30.0f;    ///< [1] of a track that is confirmed no more: it may come back
-constexpr float kLeastSureness = 0.05f;   ///< [1] a less sure detection moves nobody
+constexpr float kOutside_m = 0.2f;      ///< [m] a track may leave the area by so much
+constexpr float kDouble_m = 0.3f;       ///< [m] two confirmed tracks nearer than this
+constexpr float kDouble_mps = 0.7f;     ///< [m/s] and alike in velocity are one person
+constexpr float kBirthShare = 0.5f;     ///< [1] of a birth's score that it keeps: the place was chosen for it
+constexpr float kDemotedScore = 30.0f;  ///< [1] of a track that is confirmed no more: it may come back
+constexpr float kLeastSureness = 0.05f;                          ///< [1] a less sure detection moves nobody
 constexpr int kNewestOnly = static_cast<int>(kMaxWindowFrames);  ///< [frame] an age: nothing to be filled in
-constexpr int kMaxBirthPlaces = 24;       ///< [1] looked at in a frame
+constexpr int kMaxBirthPlaces = 24;                              ///< [1] looked at in a frame
 
 float distance_m(const estimation::Position& a, const estimation::Position& b) {
   const float x = a.x_m - b.x_m;
@@ -43,6 +43,7 @@ Status RangeTracker::configure(const RangeTrackerConfig& config, float body_radi
   likelihood_.configure(config, body_radius_m, nodes);
   search_.configure(config);
   births_.configure(config, area, n_nodes_);
+  lone_ = LoneScore(config);
   configured_ = true;
   reset();
   return Status::kOk;
@@ -139,7 +140,6 @@ void RangeTracker::update_confirmed() {
 
 /// Updates an unconfirmed track by each node's nearest detection; its score in this frame.
 float RangeTracker::follow(RangeTrack& track) const {
-  const LoneScore lone(config_);
   const float noise = config_.path_std_m * config_.path_std_m;
   float score = 0.0f;
   track.n_own = 0;
@@ -151,13 +151,13 @@ float RangeTracker::follow(RangeTrack& track) const {
     const Span<const float> paths = likelihood_.paths(node);
     const int own = nearest(paths, path, config_.gate_m);
     if (own < 0) {
-      score += lone.missed;
+      score += lone_.missed;
       continue;
     }
     const Eigen::Vector2f direction(gradient.x_m, gradient.y_m);
     const float std_m = std::sqrt(track.filter.variance_along(direction) + noise);
     const float error = paths[static_cast<std::size_t>(own)] - path;
-    score += lone(error, std_m, std::log(std_m));
+    score += lone_(error, std_m, std::log(std_m));
     track.filter.update_along(direction, error, noise);
     ++track.n_own;
   }
@@ -182,8 +182,7 @@ bool RangeTracker::crowded(std::size_t index) const {
     const float distance = distance_m(better.filter.position(), track.filter.position());
     if (!track.confirmed && distance < config_.merge_distance_m) return true;
     const auto& other = better.filter.state();
-    if (track.confirmed && distance < kDouble_m &&
-        length(own(1) - other(1), own(3) - other(3)) < kDouble_mps)
+    if (track.confirmed && distance < kDouble_m && length(own(1) - other(1), own(3) - other(3)) < kDouble_mps)
       return true;
   }
   return false;
