@@ -125,9 +125,7 @@ class PeopleLikelihood:
         total, explained = 0.0, np.zeros(self.detections.shape, bool)
         for i, trail in enumerate(people):
             seen = np.isfinite(scene.path_m[i])
-            missed = np.where(
-                self._shares(scene, i), c.shared_score, np.log(1.0 - scene.probability[i])
-            )
+            missed = np.where(self._shares(scene, i), c.shared_score, np.log(1.0 - scene.probability[i]))
             own = scene.detection[i] >= 0
             total += float(np.sum(missed[seen & ~own]))
             f, node = np.nonzero(own)
@@ -227,12 +225,12 @@ def _associate(path: Array, detections: Array, gate_m: float) -> NDArray[np.intp
     error = np.where(np.isnan(error) | ~(error < gate_m), np.inf, error)
     chosen = np.full(path.shape, -1, np.intp)
     n_people, n_detections = len(path), detections.shape[-1]
-    f, node = np.indices(path.shape[1:])
+    f, node = np.meshgrid(*(np.arange(size) for size in path.shape[1:]), indexing="ij")
     for _ in range(n_people):
         flat = np.moveaxis(error, 0, 2).reshape(*path.shape[1:], n_people * n_detections)
-        best = np.argmin(flat, axis=-1)
-        found = np.isfinite(np.take_along_axis(flat, best[..., np.newaxis], axis=-1)[..., 0])
-        who, which = np.divmod(best, n_detections)
+        best: NDArray[np.intp] = np.asarray(np.argmin(flat, axis=-1))
+        found = np.asarray(np.isfinite(np.min(flat, axis=-1)))
+        who, which = best // n_detections, best % n_detections
         chosen[who[found], f[found], node[found]] = which[found]
         error[who[found], f[found], node[found]] = np.inf
         error[:, f[found], node[found], which[found]] = np.inf

@@ -55,9 +55,10 @@ class RangeBirths:
     def process(self, likelihood: PeopleLikelihood) -> Places:
         """Places above the birth score in the newest frame."""
         scores = np.array([[self._cell_score(likelihood, z) for z in column] for column in self.grid_m])
-        margin, maxima = np.inf, []
+        margin: float = np.inf
+        maxima: list[tuple[float, int, int]] = []
         for i, j in np.ndindex(*scores.shape):
-            margin = min(margin, abs(scores[i, j] - self.config.birth_score))
+            margin = min(margin, float(abs(scores[i, j] - self.config.birth_score)))
             if scores[i, j] < self.config.birth_score:
                 continue
             is_maximum, gap = self._is_maximum(scores, i, j)
@@ -74,9 +75,7 @@ class RangeBirths:
 
     def _cell_score(self, likelihood: PeopleLikelihood, place_m: Array) -> float:
         score = 0.0
-        for path, detections in zip(
-            likelihood.visible_paths(place_m)[0], likelihood.frames[0], strict=True
-        ):
+        for path, detections in zip(likelihood.visible_paths(place_m)[0], likelihood.frames[0], strict=True):
             if np.isnan(path):
                 continue
             least = float(np.min(np.abs(detections - path), initial=np.inf))
