@@ -23,6 +23,7 @@ const std::array<NodeSite, 6> kNodes{{{1, {5.75f, 0.0f}, {0.0f, 1.5f}},
 /// People who stand still, and whom every node detects where they are.
 struct Room {
   explicit Room(std::initializer_list<Point> people) {
+    config.visible_path_m = config.nearest_path_m = -1.0f;
     likelihood.configure(config, kBodyRadius_m, {kNodes.data(), kNodes.size()});
     search.configure(config);
     BoundedVector<FrameDetection, kMaxFrameDetections> detections;

@@ -32,7 +32,13 @@ def test_tracks(kind, site_of, core_site):  # type: ignore[no-untyped-def]
     site, compared, confirmed = site_of(kind), 0, 0
     nodes, area = core_site(site)
     config = _core.RangeTrackerConfig(
-        birth_step_m=0.8, max_births=6, window_frames=6, newcomer_cost=10.0, nearest_path_m=0.1
+        birth_step_m=0.8,
+        max_births=6,
+        window_frames=6,
+        newcomer_cost=10.0,
+        lasting_score=15.0,
+        visible_path_m=-0.05,
+        nearest_path_m=0.1,
     )
     for seed in range(20):
         core = _core.RangeTracker()

@@ -17,8 +17,8 @@ struct RangeTrackerConfig {
   float penumbra_m = 0.7f;       ///< [m] and nearer than this half in the way, >= shadow_radius_m
   float path_scale_m = 0.08f;    ///< [m] mean deviation of a person's detection from the path, > 0
   float path_std_m = 0.12f;      ///< [m] the same as a standard deviation, for the filters, > 0
-  float visible_path_m = 0.0f;   ///< [m] nearer behind the direct path nobody is seen
-  float nearest_path_m = 0.0f;   ///< [m] behind the direct path the nearest detections are, >= visible_path_m
+  float visible_path_m = 0.45f;  ///< [m] nearer behind the direct path nobody is seen: a node's blind zone
+  float nearest_path_m = 0.45f;  ///< [m] behind the direct path the nearest detections are, >= visible_path_m
   float shared_path_m = 0.4f;    ///< [m] two people nearer than this in path may be one detection, >= 0
   float shared_score = -0.5f;    ///< [1] of the one without, <= 0
   float gate_m = 0.5f;           ///< [m] of path: a detection further off is not the person's, > 0

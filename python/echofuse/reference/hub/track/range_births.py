@@ -18,6 +18,7 @@ MAX_PLACES = 24
 GRID_VARIANCE = 0.3
 GATE_STDS = 4.0
 NEIGHBOURS = 2
+EDGE = 5.0  # a score changes by less when one node more, or less, can see the place
 
 
 class Places(NamedTuple):
@@ -54,8 +55,10 @@ class RangeBirths:
 
     def process(self, likelihood: PeopleLikelihood) -> Places:
         """Places above the birth score in the newest frame."""
-        scores = np.array([[self._cell_score(likelihood, z) for z in column] for column in self.grid_m])
-        margin: float = np.inf
+        cells = np.array([[self._cell_score(likelihood, z) for z in column] for column in self.grid_m])
+        scores, edges = cells[..., 0], cells[..., 1]
+        high = scores > self.config.birth_score - EDGE
+        margin = float(np.min(edges, initial=np.inf, where=high))
         maxima: list[tuple[float, int, int]] = []
         for i, j in np.ndindex(*scores.shape):
             margin = min(margin, float(abs(scores[i, j] - self.config.birth_score)))
@@ -73,9 +76,11 @@ class RangeBirths:
     def _cells(self, length_m: float) -> int:
         return max(1, int(np.float32(length_m) / np.float32(self.step_m)))
 
-    def _cell_score(self, likelihood: PeopleLikelihood, place_m: Array) -> float:
+    def _cell_score(self, likelihood: PeopleLikelihood, place_m: Array) -> tuple[float, float]:
+        """Score of a person at a place, and how near a node is to seeing it or not [m]."""
         score = 0.0
-        for path, detections in zip(likelihood.visible_paths(place_m)[0], likelihood.frames[0], strict=True):
+        paths, edge = likelihood.visible_paths(place_m)
+        for path, detections in zip(paths, likelihood.frames[0], strict=True):
             if np.isnan(path):
                 continue
             least = float(np.min(np.abs(detections - path), initial=np.inf))
@@ -83,7 +88,7 @@ class RangeBirths:
                 score += lone_score(self.config, least, self.std_m)
             else:
                 score += missed_score(self.config)
-        return score
+        return score, edge
 
     @staticmethod
     def _is_maximum(scores: Array, i: int, j: int) -> tuple[bool, float]:
