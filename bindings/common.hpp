@@ -38,6 +38,7 @@ void bind_signal(py::module_& m);
 void bind_estimation(py::module_& m);
 void bind_node(py::module_& m);
 void bind_hub(py::module_& m);
+void bind_link(py::module_& m);
 
 template <class T>
 using ArrayOf = py::array_t<T, py::array::c_style>;

@@ -9,4 +9,5 @@ PYBIND11_MODULE(_core, m) {
   echofuse::bindings::bind_estimation(m);
   echofuse::bindings::bind_node(m);
   echofuse::bindings::bind_hub(m);
+  echofuse::bindings::bind_link(m);
 }

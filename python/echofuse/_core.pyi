@@ -42,6 +42,8 @@ __all__: list[str] = [
     "FrameAssemblerCounters",
     "KalmanTracker",
     "LIMITS",
+    "LinkMachine",
+    "LinkReader",
     "MEASUREMENT_STAGES_BYTES",
     "MeasurementSelection",
     "MixtureConfig",
@@ -81,12 +83,21 @@ __all__: list[str] = [
     "TrackState",
     "TrackUpdate",
     "Tracker",
+    "TransferKind",
     "assign",
     "cassini_ratio",
+    "crc16",
+    "crc32c",
+    "decode_detections",
+    "decode_tracks",
+    "encode_detections",
+    "encode_tracks",
     "gaussian_kernel",
+    "hub_registers",
     "invalid_site",
     "leg_product_m2",
     "max_leg_product_m2",
+    "node_registers",
     "path_length",
     "rectify",
     "snr",
@@ -94,6 +105,7 @@ __all__: list[str] = [
     "sum_on_cassini_m",
     "systematic_resample",
     "time_of_arrival_s",
+    "write_frame",
 ]
 
 class Status:
@@ -495,7 +507,7 @@ class MixtureConfig:
         initial_std_m: float = 0.2,
         covariance_floor_m2: float = 0.001,
         background_density_per_m2: float = 0.01,
-        max_iterations: int = 30,
+        max_iterations: int = 15,
         tolerance_m: float = 0.001,
     ) -> None: ...
     def __repr__(self) -> str: ...
@@ -3071,6 +3083,68 @@ class SensorRadarHub:
         """
     def reset(self) -> None: ...
 
+class TransferKind:
+    """
+    Members:
+
+      message
+
+      request
+
+      response
+    """
+
+    __members__: typing.ClassVar[dict[str, TransferKind]]
+    message: typing.ClassVar[TransferKind]
+    request: typing.ClassVar[TransferKind]
+    response: typing.ClassVar[TransferKind]
+    @typing.overload
+    def __eq__(self, other: TransferKind) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: TransferKind) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class LinkReader:
+    """
+    Finds frames in a byte stream.
+    """
+    def __init__(self, capacity: typing.SupportsInt | typing.SupportsIndex) -> None:
+        """
+        capacity: [byte] of header, payload and CRC of the longest frame.
+        """
+    def counters(self) -> dict: ...
+    def feed(self, data: str, now_us: typing.SupportsInt | typing.SupportsIndex) -> list:
+        """
+        [(source, port, transfer_id, payload, kind, destination, priority)] of the transfers completed.
+        """
+
+class LinkMachine:
+    """
+    A machine on the link without a pipeline; a node's registers.
+    """
+    def __init__(self, node_id: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def feed(self, data: str, now_us: typing.SupportsInt | typing.SupportsIndex) -> bytes:
+        """
+        What it answers.
+        """
+    def heartbeat(self, now_us: typing.SupportsInt | typing.SupportsIndex) -> bytes: ...
+    def refused_writes(self) -> int: ...
+
 def assign(cost: numpy.typing.NDArray[numpy.float32]) -> tuple[Status, numpy.typing.NDArray[numpy.int32]]:
     """
     (status, column of each row or -1) of the least total cost.
@@ -3081,11 +3155,42 @@ def cassini_ratio(
     to_rx_m: typing.SupportsFloat | typing.SupportsIndex,
     baseline_m: typing.SupportsFloat | typing.SupportsIndex,
 ) -> float: ...
+def crc16(data: str) -> int: ...
+def crc32c(data: str) -> int: ...
+def decode_detections(
+    source: typing.SupportsInt | typing.SupportsIndex,
+    transfer_id: typing.SupportsInt | typing.SupportsIndex,
+    payload: str,
+) -> tuple[Status, int, int, int, numpy.typing.NDArray[numpy.void]]:
+    """
+    (status, node_id, frame, time_us, detections)
+    """
+
+def decode_tracks(payload: str) -> tuple[Status, int, int, numpy.typing.NDArray[numpy.void]]:
+    """
+    (status, time_us, frame, tracks)
+    """
+
+def encode_detections(
+    time_us: typing.SupportsInt | typing.SupportsIndex,
+    delay_s: numpy.typing.NDArray[numpy.float32],
+    weight: numpy.typing.NDArray[numpy.float32],
+) -> bytes: ...
+def encode_tracks(
+    time_us: typing.SupportsInt | typing.SupportsIndex,
+    frame: typing.SupportsInt | typing.SupportsIndex,
+    tracks: numpy.typing.NDArray[numpy.void],
+) -> bytes: ...
 def gaussian_kernel(
     squared_distance: numpy.typing.NDArray[numpy.float32],
 ) -> numpy.typing.NDArray[numpy.float32]:
     """
     exp(-d^2 / 2) of each squared distance (n,), 0 beyond 25.
+    """
+
+def hub_registers() -> list[str]:
+    """
+    Names of a hub's configuration on the link; '#' stands for the index of a node.
     """
 
 def invalid_site(nodes: collections.abc.Sequence[NodeSite], area: Area) -> typing.Any:
@@ -3102,6 +3207,11 @@ def max_leg_product_m2(
     bistatic_constant_m4: typing.SupportsFloat | typing.SupportsIndex,
     min_snr: typing.SupportsFloat | typing.SupportsIndex,
 ) -> float: ...
+def node_registers() -> list[str]:
+    """
+    Names of a node's configuration on the link.
+    """
+
 def path_length(
     position: Point, tx: Point, rx: Point, body_radius_m: typing.SupportsFloat | typing.SupportsIndex
 ) -> tuple[float, float, float]:
@@ -3143,6 +3253,19 @@ def systematic_resample(
 def time_of_arrival_s(
     to_tx_m: typing.SupportsFloat | typing.SupportsIndex, to_rx_m: typing.SupportsFloat | typing.SupportsIndex
 ) -> float: ...
+def write_frame(
+    source: typing.SupportsInt | typing.SupportsIndex,
+    port: typing.SupportsInt | typing.SupportsIndex,
+    transfer_id: typing.SupportsInt | typing.SupportsIndex,
+    payload: str,
+    *,
+    kind: TransferKind = TransferKind.message,
+    destination: typing.SupportsInt | typing.SupportsIndex = 65535,
+    priority: typing.SupportsInt | typing.SupportsIndex = 4,
+) -> bytes:
+    """
+    One frame with its delimiters.
+    """
 
 LIMITS: dict = {
     "max_samples_per_scan": 1920,
@@ -3161,5 +3284,5 @@ LIMITS: dict = {
     "max_assignment": 32,
 }
 MEASUREMENT_STAGES_BYTES: int = 33976
-SENSOR_RADAR_HUB_BYTES: int = 195280
-SENSOR_RADAR_NODE_BYTES: int = 65920
+SENSOR_RADAR_HUB_BYTES: int = 200432
+SENSOR_RADAR_NODE_BYTES: int = 65928
