@@ -495,7 +495,7 @@ class MixtureConfig:
         initial_std_m: float = 0.2,
         covariance_floor_m2: float = 0.001,
         background_density_per_m2: float = 0.01,
-        max_iterations: int = 30,
+        max_iterations: int = 15,
         tolerance_m: float = 0.001,
     ) -> None: ...
     def __repr__(self) -> str: ...
@@ -3105,5 +3105,5 @@ LIMITS: dict = {
     "max_assignment": 32,
 }
 MEASUREMENT_STAGES_BYTES: int = 33976
-SENSOR_RADAR_HUB_BYTES: int = 147848
-SENSOR_RADAR_NODE_BYTES: int = 65920
+SENSOR_RADAR_HUB_BYTES: int = 153000
+SENSOR_RADAR_NODE_BYTES: int = 65928
