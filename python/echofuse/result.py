@@ -40,7 +40,10 @@ class RunResult:
     baseline_tracks: NDArray[np.void]  # TRACK_DTYPE, Kalman filter with global nearest neighbour, same points
     metrics: dict[str, float]  # flat, names carry units (see `design.md` section 7)
     baseline_metrics: dict[str, float]
-    counters: dict[str, dict[str, int]]  # "hub" and each node's name -> counter -> count
+    target: str = "inprocess"  # what it ran on
+    counters: dict[str, dict[str, int]] = field(
+        default_factory=dict
+    )  # "hub" and each node's name -> counter -> count
     stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
     shown_frame: int = 0  # the frame whose stages the report shows
     shown_taps: dict[str, dict[str, NDArray[Any]]] = field(
@@ -60,7 +63,7 @@ class RunResult:
             for frame, time_us in enumerate(self.frame_time_us)
         ]
         return Outputs(
-            target="inprocess",
+            target=self.target,
             frame_time_us=self.frame_time_us,
             frame_hash=np.frombuffer(b"".join(digests), np.uint8).reshape(-1, 32),
             detections=self.detections,
