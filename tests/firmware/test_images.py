@@ -88,8 +88,8 @@ def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
         ["arm-none-eabi-c++filt", *found], check=True, capture_output=True, text=True
     ).stdout
     compared = 0
-    for function, name in zip(found.values(), map(plain_name, plain.splitlines()), strict=True):
-        if "echofuse" not in name or name not in known:
+    for (symbol, function), name in zip(found.items(), map(plain_name, plain.splitlines()), strict=True):
+        if "echofuse" not in name or name not in known or "." in symbol:  # ".": a split-off part
             continue
         compared += 1
         # The compiler leaves out padding and arguments in registers that it stores before its frame.
