@@ -1,6 +1,8 @@
 # The front door. Everything lands in .venv, build/ and demo/.
 #   demo       build, run the case study of the sensor radar, write demo/report.html
 #   build      the Python package with its C++ core, as .venv/bin/echofuse
+#   firmware   the bare-metal images, into build/cortex-m7 (and build/cortex-m4, which proves that a smaller core will do)
+#   budgets    measures the images, prints README's table, and makes its figures the budgets of tests/firmware
 #   test       everything: C++, Python, then C++ again under the sanitizers
 #   test-fast  C++ and the quick part of Python, under three minutes
 #   bench      C++ against the NumPy reference
@@ -19,7 +21,7 @@ SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings pyt
              \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
 CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
 
-.PHONY: demo build test test-fast test-cpp bench lint stubs clean distclean
+.PHONY: demo build firmware budgets test test-fast test-cpp bench lint stubs clean distclean
 
 demo: build
 	.venv/bin/echofuse run sensor-radar --out demo
@@ -36,14 +38,23 @@ build/.installed: $(SOURCES) | .venv/.setup-run
 	tools/setup $*
 
 # What a part adds to the environment is put into the one that `run` has made.
-.venv/.setup-test .venv/.setup-lint: .venv/.setup-run
+.venv/.setup-test .venv/.setup-firmware .venv/.setup-lint: .venv/.setup-run
+
+firmware: .venv/.setup-firmware
+	cmake --preset cortex-m7 >/dev/null
+	cmake --build --preset cortex-m7
+	cmake --preset cortex-m4 >/dev/null
+	cmake --build --preset cortex-m4
+
+budgets: build firmware
+	$(PYTHON) tests/firmware/measure.py --update
 
 test-cpp: .venv/.setup-test
 	cmake --preset host >/dev/null
 	cmake --build --preset host
 	ctest --preset host
 
-test: build test-cpp
+test: build test-cpp firmware
 	$(PYTHON) -m pytest -q -n auto
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize

@@ -38,6 +38,9 @@ std::uint32_t ticks();
 /// Deepest use of the stack so far [byte], by painting; 0 where the board cannot tell.
 std::size_t stack_used_bytes();
 
+/// Somebody listens to the taps of what is done until the next wait().
+bool taps_wanted();
+
 /// What a tap or a profile shows, to the board's debug port; false when it has none, so that the link must carry it.
 /// kind and id: lockstep.hpp.
 bool trace(std::uint8_t kind, std::uint8_t id, Span<const std::uint8_t> bytes);

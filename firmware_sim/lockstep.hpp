@@ -13,7 +13,8 @@
 ///                                <----------   (UART or socket) what the firmware sends
 ///                                <----------   TraceHeader kDone + DonePayload: in wait() again
 ///
-/// The emulation reads the link until DonePayload's count, so nothing depends on the wall clock.
+/// The emulation reads the link until DonePayload's count, so nothing depends on the wall clock. It reads link and trace
+/// at once: a board whose link nobody drains waits in send() (a Unix socket holds only 278 bytes that come one by one).
 namespace echofuse::board {
 
 inline constexpr std::uint32_t kStepMagic = 0x50455453;   ///< "STEP"
@@ -21,12 +22,12 @@ inline constexpr std::uint32_t kTraceMagic = 0x43415254;  ///< "TRAC"
 
 struct StepHeader {
   std::uint32_t magic = kStepMagic;
-  std::uint32_t sequence = 0;      ///< counts the board's steps from 1; kDone repeats it
-  std::int64_t now_us = 0;         ///< the board's clock from here on
-  std::int64_t scan_time_us = 0;   ///< of the scan, the board's clock
-  std::uint32_t n_samples = 0;     ///< float32 samples that follow; 0: no scan in this step
-  std::uint32_t link_bytes = 0;    ///< that the emulation has put on the link since the start, modulo 2^32
-  std::uint32_t flags = 0;         ///< kStepStop | kStepTaps
+  std::uint32_t sequence = 0;     ///< counts the board's steps from 1; kDone repeats it
+  std::int64_t now_us = 0;        ///< the board's clock from here on
+  std::int64_t scan_time_us = 0;  ///< of the scan, the board's clock
+  std::uint32_t n_samples = 0;    ///< float32 samples that follow; 0: no scan in this step
+  std::uint32_t link_bytes = 0;   ///< that the emulation has put on the link since the start, modulo 2^32
+  std::uint32_t flags = 0;        ///< kStepStop | kStepTaps
   std::uint32_t reserved = 0;
 };
 static_assert(sizeof(StepHeader) == 40);

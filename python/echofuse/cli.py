@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from echofuse import __version__
-from echofuse.errors import InputError
+from echofuse.errors import InputError, TargetError
 
 CASES = ("sensor-radar",)
 
@@ -70,6 +70,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(f"echofuse: {error}", file=sys.stderr)
         return 2
+    except TargetError as error:
+        print(f"echofuse: {error}", file=sys.stderr)
+        return 1
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

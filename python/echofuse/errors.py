@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-__all__ = ["InputError", "problem"]
+__all__ = ["InputError", "TargetError", "problem"]
 
 
 class InputError(Exception):
@@ -12,6 +12,10 @@ class InputError(Exception):
         lines = (problems,) if isinstance(problems, str) else tuple(problems)
         self.problems: tuple[str, ...] = tuple(" ".join(line.split()) for line in lines)
         super().__init__("\n".join(self.problems))
+
+
+class TargetError(Exception):
+    """A target that cannot be had or does not do its part: one line that says which and what was waited for."""
 
 
 def problem(file: object, key: str, expected: str, found: object = None) -> str:

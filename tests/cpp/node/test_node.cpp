@@ -95,6 +95,30 @@ TEST_CASE("GIVEN a sink WHEN a scan is processed THEN every tap comes once and i
   CHECK(seen.last == static_cast<int>(TapId::kDetections));
 }
 
+TEST_CASE(
+    "GIVEN a sink for marks WHEN a scan is processed THEN each stage ends with one, and no tap is prepared") {
+  SensorRadarNode node;
+  REQUIRE(node.configure(config_of()) == Status::kOk);
+  REQUIRE(node.set_empty_room(view(scan_of(1, 0.0f))) == Status::kOk);
+  struct Marks {
+    std::vector<TapId> taps;
+    std::size_t values = 0;
+  } marks;
+  node.set_tap_sink(TapSink::marks(
+      [](void* context, TapId tap, Span<const float> values) {
+        static_cast<Marks*>(context)->taps.push_back(tap);
+        static_cast<Marks*>(context)->values += values.size();
+      },
+      &marks));
+  link::Detections report;
+  REQUIRE(node.process(view(scan_of(2, 650.0f)), 0, report) == Status::kOk);
+  CHECK(marks.taps == std::vector<TapId>{TapId::kScan, TapId::kEnvelope, TapId::kDirectPath,
+                                         TapId::kAlignment, TapId::kAligned, TapId::kResidual,
+                                         TapId::kThreshold, TapId::kRangeClusters, TapId::kDetections});
+  CHECK(marks.values == 0);
+  CHECK_FALSE(report.detections.empty());
+}
+
 TEST_CASE("GIVEN a broken scan WHEN it is processed THEN it is counted and nothing else changes") {
   SensorRadarNode node;
   REQUIRE(node.configure(config_of()) == Status::kOk);

@@ -45,6 +45,13 @@ inline constexpr std::size_t kMaxNewbornParticles =
 inline constexpr std::size_t kMaxAssignment =
     32;  ///< rows or columns of an assignment: points and tracks both fit
 
+// The link.
+inline constexpr std::size_t kMaxLinkSessions =
+    64;  ///< pairs of sender and port whose last transfer is remembered: 16 nodes of 4 subjects
+inline constexpr std::size_t kMaxHealthValues = 48;  ///< counters in one NodeHealth: a hub has 28, and its link 8
+inline constexpr std::size_t kMaxPayloadBytes =
+    1024;  ///< [byte] of any message but RawScan: Tracks takes 24 times 35 and 12
+
 }  // namespace echofuse
 
 #endif

@@ -31,23 +31,38 @@ enum class TapId : std::uint8_t {
   kTracks = 39,     ///< (n_tracks, 7) id, state, x, y [m], vx, vy [m/s], scans since the last update
 };
 
-/// Receives one tap: `values` is only valid during the call.
+/// Receives one tap: `values` is only valid during the call, and empty for a mark.
 using TapFunction = void (*)(void* context, TapId tap, Span<const float> values);
 
-/// A pipeline's way out for taps. Without a sink a tap costs one comparison.
+/// A pipeline's way out for taps: all their values; or marks alone, so that the stages that run between them can be
+/// timed without the work of showing anything. Without a sink a tap costs one comparison.
 class TapSink {
  public:
   TapSink() = default;
-  TapSink(TapFunction function, void* context) : function_(function), context_(context) {}
+  TapSink(TapFunction function, void* context) : function_(function), context_(context), values_(true) {}
 
-  [[nodiscard]] bool enabled() const { return function_ != nullptr; }
+  /// A sink that is called at each tap, and gets no values.
+  static TapSink marks(TapFunction function, void* context) {
+    TapSink sink(function, context);
+    sink.values_ = false;
+    return sink;
+  }
+
+  /// True if the values of `tap` are wanted, so that it is worth while to prepare them; marks it otherwise.
+  [[nodiscard]] bool wants(TapId tap) const {
+    if (!values_ && function_ != nullptr) function_(context_, tap, {});
+    return values_;
+  }
+
+  /// For values that are at hand.
   void operator()(TapId tap, Span<const float> values) const {
-    if (function_ != nullptr) function_(context_, tap, values);
+    if (function_ != nullptr) function_(context_, tap, values_ ? values : Span<const float>());
   }
 
  private:
   TapFunction function_ = nullptr;
   void* context_ = nullptr;
+  bool values_ = false;  ///< and not marks alone
 };
 
 }  // namespace echofuse

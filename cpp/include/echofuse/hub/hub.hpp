@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -80,9 +81,9 @@ class SensorRadarHub {
   Status track(float dt_s, link::Tracks& tracks);
   float step_s(std::int64_t time_us);
   void predict_people(float dt_s, BoundedVector<Point>& people) const;
-  void tap_frame() const;
-  void tap_selected() const;
-  void tap_points() const;
+  void tap_frame();
+  void tap_selected();
+  void tap_points();
 
   bool configured_ = false;
   SensorRadarHubConfig config_;
@@ -101,6 +102,10 @@ class SensorRadarHub {
   std::int64_t last_time_us_ = 0;
   bool first_frame_ = true;
   std::uint32_t clock_faults_ = 0;
+
+  /// Where a tap is prepared: too much for a stack.
+  std::array<float, std::max({3 * kMaxFrameDetections, 5 * kMaxMeasurementsPerFrame, 4 * kMaxPointsPerFrame})>
+      tap_rows_{};
 };
 
 }  // namespace echofuse::hub

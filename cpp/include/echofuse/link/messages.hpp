@@ -44,4 +44,31 @@ struct Tracks {
   BoundedVector<Track, kMaxTracks> tracks;  ///< ascending id; no dead ones
 };
 
+enum class MachineKind : std::uint8_t {
+  kSensorRadarNode = 0,
+  kSensorRadarHub = 1,
+};
+
+/// What a machine has counted since its start; the order of a kind's values stands in docs/link_protocol.md.
+struct NodeHealth {
+  MachineKind kind = MachineKind::kSensorRadarNode;
+  BoundedVector<std::uint32_t, kMaxHealthValues> values;
+};
+
+/// Values of uavcan.node.Health and uavcan.node.Mode.
+enum class Health : std::uint8_t { kNominal = 0, kAdvisory = 1, kCaution = 2, kWarning = 3 };
+enum class Mode : std::uint8_t {
+  kOperational = 0,
+  kInitialization = 1,
+  kMaintenance = 2,
+  kSoftwareUpdate = 3
+};
+
+struct Heartbeat {
+  std::uint32_t uptime_s = 0;
+  Health health = Health::kNominal;
+  Mode mode = Mode::kOperational;
+  std::uint8_t vendor_status = 0;
+};
+
 }  // namespace echofuse::link

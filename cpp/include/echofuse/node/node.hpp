@@ -107,7 +107,8 @@ class SensorRadarNode {
   void detect(Range range);
   Status report(link::Detections& out);
   float delay_s(float position_samples) const;
-  void tap_direct_path(const DirectPath& direct_path, const signal::Alignment& alignment) const;
+  void tap_direct_path(const DirectPath& direct_path) const;
+  void tap_alignment(const signal::Alignment& alignment) const;
   void tap_clusters(Span<const std::uint8_t> decisions);
   void tap_report(const link::Detections& out) const;
   Span<float> cut(Scan& scan) { return {scan.data(), static_cast<std::size_t>(config_.n_samples)}; }
@@ -140,6 +141,9 @@ class SensorRadarNode {
   std::array<std::uint8_t, kMaxSamplesPerScan> decisions_{};
   BoundedVector<RangeCluster, kMaxClustersPerScan> clusters_;
 };
+
+static_assert(4 * kMaxClustersPerScan <= kMaxSamplesPerScan,
+              "the clusters' tap is prepared in a scan's place");
 
 static_assert(sizeof(SensorRadarNode) <= 80 * 1024, "a node's RAM budget");
 

@@ -42,7 +42,6 @@ class Envelope {
 
  private:
   void hilbert(Span<const float> scan, Span<float> envelope) const;
-  void hilbert_4(const float* scan, float* envelope) const;
   void square_low_pass(Span<const float> scan, Span<float> envelope) const;
 
   bool configured_ = false;

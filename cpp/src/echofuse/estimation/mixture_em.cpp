@@ -1,5 +1,6 @@
 #include "echofuse/estimation/mixture_em.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr float kEmptyShare = 1e-6f;     ///< a component with less stays where it is, with share 0
 constexpr float kLeastDensity = 1e-12f;  ///< [1/m^2] of a particle that nothing explains, for the logarithm
+constexpr std::size_t kBlock = 16;       ///< [particle] looked at together
 constexpr float kTwoPi = 2.0f * kPi;
 
 bool within(float value, float least, float most) { return value >= least && value <= most; }
@@ -47,9 +49,9 @@ struct Moments {
   float x = 0.0f, y = 0.0f, vx = 0.0f, vy = 0.0f;
   float xx = 0.0f, xy = 0.0f, yy = 0.0f;
 
-  void add(const Particle& particle, const MixtureComponent& component, float part) {
-    const float dx = particle.x_m - component.x_m;
-    const float dy = particle.y_m - component.y_m;
+  void add(const Particle& particle, float x_m, float y_m, float part) {
+    const float dx = particle.x_m - x_m;
+    const float dy = particle.y_m - y_m;
     weight += part;
     x += part * dx;
     y += part * dy;
@@ -59,6 +61,48 @@ struct Moments {
     xy += part * dx * dy;
     yy += part * dy * dy;
   }
+};
+
+/// A few particles, component by component: what belongs to a component stays in registers meanwhile.
+class Block {
+ public:
+  Block(const Particle* particles, std::size_t count, float background)
+      : particles_(particles), count_(count) {
+    for (std::size_t i = 0; i < count; ++i) density_[i] = background;
+  }
+
+  void add_density(const Density& density, std::size_t component) {
+    const Density here = density;  // a copy, which no store can change
+    for (std::size_t i = 0; i < count_; ++i) {
+      const float part = here.at(particles_[i]);
+      parts_[component][i] = part;
+      density_[i] += part;
+    }
+  }
+
+  /// From each particle's density its weight over it; 0 where nothing explains the particle.
+  void share_out(float total, float background, CompensatedSum& stray) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const bool explained = density_[i] > 0.0f;
+      density_[i] = explained ? particles_[i].weight / (total * density_[i]) : 0.0f;
+      if (explained) stray.add(background * density_[i]);
+    }
+  }
+
+  void add_moments(const MixtureComponent& component, std::size_t index, Moments& moments) const {
+    Moments sums = moments;
+    const float x_m = component.x_m;
+    const float y_m = component.y_m;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (parts_[index][i] > 0.0f) sums.add(particles_[i], x_m, y_m, parts_[index][i] * density_[i]);
+    moments = sums;
+  }
+
+ private:
+  const Particle* particles_;
+  std::size_t count_;
+  std::array<float, kBlock> density_;  ///< [1/m^2], then weight over it
+  std::array<std::array<float, kBlock>, kMaxTargets> parts_;
 };
 
 float squared_distance_to_nearest(const Particle& particle, const Mixture& mixture) {
@@ -181,22 +225,16 @@ float MixtureFitter::step(Span<const Particle> particles, float total, Mixture& 
   const std::size_t n = mixture.components.size();
   std::array<Density, kMaxTargets> densities;
   std::array<Moments, kMaxTargets> moments;
-  std::array<float, kMaxTargets> parts;
   for (std::size_t c = 0; c < n; ++c) densities[c] = Density(mixture.components[c]);
   const float background = mixture.background * config_.background_density_per_m2;
 
   CompensatedSum stray;
-  for (const Particle& particle : particles) {
-    float density = background;
-    for (std::size_t c = 0; c < n; ++c) {
-      parts[c] = densities[c].at(particle);
-      density += parts[c];
-    }
-    if (!(density > 0.0f)) continue;
-    const float scale = particle.weight / (total * density);
-    stray.add(background * scale);
-    for (std::size_t c = 0; c < n; ++c)
-      if (parts[c] > 0.0f) moments[c].add(particle, mixture.components[c], parts[c] * scale);
+  for (std::size_t first = 0; first < particles.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, particles.size() - first);
+    Block block(particles.data() + first, count, background);
+    for (std::size_t c = 0; c < n; ++c) block.add_density(densities[c], c);
+    block.share_out(total, background, stray);
+    for (std::size_t c = 0; c < n; ++c) block.add_moments(mixture.components[c], c, moments[c]);
   }
 
   float everything = stray.value();

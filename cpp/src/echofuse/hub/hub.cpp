@@ -133,32 +133,29 @@ SensorRadarHubCounters SensorRadarHub::counters() const {
           clock_faults_};
 }
 
-void SensorRadarHub::tap_frame() const {
-  if (!taps_.enabled()) return;
-  std::array<float, 3 * kMaxFrameDetections> rows;
+void SensorRadarHub::tap_frame() {
+  if (!taps_.wants(TapId::kFrame)) return;
   std::size_t n = 0;
   for (const FrameDetection& d : frame_.detections)
-    for (const float value : {static_cast<float>(d.node_index), d.path_m, d.weight}) rows[n++] = value;
-  taps_(TapId::kFrame, {rows.data(), n});
+    for (const float value : {static_cast<float>(d.node_index), d.path_m, d.weight}) tap_rows_[n++] = value;
+  taps_(TapId::kFrame, {tap_rows_.data(), n});
 }
 
-void SensorRadarHub::tap_selected() const {
-  if (!taps_.enabled()) return;
-  std::array<float, 5 * kMaxMeasurementsPerFrame> rows;
+void SensorRadarHub::tap_selected() {
+  if (!taps_.wants(TapId::kSelected)) return;
   std::size_t n = 0;
   for (const Measurement& m : measurements_)
     for (const float value : {m.x_m, m.y_m, m.weight, m.range_residual_m, static_cast<float>(m.n_nodes)})
-      rows[n++] = value;
-  taps_(TapId::kSelected, {rows.data(), n});
+      tap_rows_[n++] = value;
+  taps_(TapId::kSelected, {tap_rows_.data(), n});
 }
 
-void SensorRadarHub::tap_points() const {
-  if (!taps_.enabled()) return;
-  std::array<float, 4 * kMaxPointsPerFrame> rows;
+void SensorRadarHub::tap_points() {
+  if (!taps_.wants(TapId::kPoints)) return;
   std::size_t n = 0;
   for (const PointCluster& p : points_)
-    for (const float value : {p.x_m, p.y_m, static_cast<float>(p.members), p.weight}) rows[n++] = value;
-  taps_(TapId::kPoints, {rows.data(), n});
+    for (const float value : {p.x_m, p.y_m, static_cast<float>(p.members), p.weight}) tap_rows_[n++] = value;
+  taps_(TapId::kPoints, {tap_rows_.data(), n});
 }
 
 }  // namespace echofuse::hub

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echofuse/core/constants.hpp"
+#include "echofuse/core/magnitude.hpp"
 
 namespace echofuse::node {
 namespace {
@@ -94,10 +95,7 @@ bool SensorRadarNode::ready() const {
 }
 
 bool SensorRadarNode::usable(Span<const float> scan) const {
-  if (scan.size() != static_cast<std::size_t>(config_.n_samples)) return false;
-  for (const float sample : scan)
-    if (!(std::abs(sample) <= kMaxMagnitude)) return false;
-  return true;
+  return scan.size() == static_cast<std::size_t>(config_.n_samples) && all_within(scan, kMaxMagnitude);
 }
 
 Status SensorRadarNode::set_empty_room(Span<const float> scan) {
@@ -144,9 +142,10 @@ Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, li
   (void)envelope_.process(integrated, amplitude);
   taps_(TapId::kEnvelope, amplitude);
   const DirectPath direct_path = find_direct_path(amplitude);
+  tap_direct_path(direct_path);
   if (!direct_path.found && config_.time_zero == TimeZero::kDirectPath) ++counters_.direct_path_missing;
   const signal::Alignment alignment = align(amplitude, direct_path);
-  tap_direct_path(direct_path, alignment);
+  tap_alignment(alignment);
   if (n_empty_room_ == 0 && n_reference_ < config_.clutter.learning_scans)
     learn_reference(amplitude, alignment.shift_samples);
 
@@ -159,6 +158,7 @@ Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, li
   ++counters_.scans;
   if (!reports) ++counters_.learning_scans;
   detect(reports ? usable_range(alignment.shift_samples) : Range{});
+  taps_(TapId::kThreshold, cut(work_));
   const Status status = report(out);
   tap_report(out);
   report_ready_ = true;
@@ -225,8 +225,10 @@ void SensorRadarNode::remove_clutter(Span<const float> scan, float shift_samples
   (void)aligner_.shift(on_envelope ? Span<const float>(amplitude) : scan, shift_samples, aligned);
   taps_(TapId::kAligned, aligned);
   (void)clutter_.process(aligned, on_envelope ? amplitude : aligned);
-  if (!on_envelope) (void)envelope_.process(aligned, amplitude);
-  rectify(amplitude);
+  if (on_envelope)
+    rectify(amplitude);
+  else
+    (void)envelope_.process(aligned, amplitude);  // never negative
 }
 
 /// What lies behind the blind zone and is not touched by what the alignment shifted in at the ends.
@@ -260,6 +262,7 @@ void SensorRadarNode::detect(Range range) {
   const Span<const float> amplitude = cut(amplitude_).subspan(first, count);
   const Span<std::uint8_t> decisions{decisions_.data() + first, count};
   (void)cfar_.process(amplitude, threshold.subspan(first, count), decisions);
+  if (config_.noise_floor.factor == 0.0f) return;  // no floor: all stands as decided
   (void)noise_floor_.process(amplitude, threshold.subspan(first, count));
   for (std::size_t k = 0; k < count; ++k)
     if (amplitude[k] * amplitude[k] <= threshold[first + k]) decisions[k] = 0;
@@ -290,34 +293,36 @@ float SensorRadarNode::delay_s(float position_samples) const {
          config_.baseline_m / kSpeedOfLight_mps + config_.delay_offset_s;
 }
 
-void SensorRadarNode::tap_direct_path(const DirectPath& direct_path,
-                                      const signal::Alignment& alignment) const {
-  if (!taps_.enabled()) return;
+void SensorRadarNode::tap_direct_path(const DirectPath& direct_path) const {
+  if (!taps_.wants(TapId::kDirectPath)) return;
   const float path[] = {direct_path.found ? 1.0f : 0.0f, direct_path.toa_samples, direct_path.threshold};
-  const float shift[] = {alignment.shift_samples, alignment.correlation};
   taps_(TapId::kDirectPath, path);
+}
+
+void SensorRadarNode::tap_alignment(const signal::Alignment& alignment) const {
+  if (!taps_.wants(TapId::kAlignment)) return;
+  const float shift[] = {alignment.shift_samples, alignment.correlation};
   taps_(TapId::kAlignment, shift);
 }
 
+/// Overwrites work_, which nobody needs any more.
 void SensorRadarNode::tap_clusters(Span<const std::uint8_t> decisions) {
-  if (!taps_.enabled()) return;
-  taps_(TapId::kThreshold, cut(work_));
-  const Span<float> values = cut(work_);  // free, now that the clusters are made
+  if (!taps_.wants(TapId::kRangeClusters)) return;
+  const Span<float> values = cut(work_);
   for (std::size_t k = 0; k < decisions.size(); ++k) values[k] = static_cast<float>(decisions[k]);
   taps_(TapId::kDecisions, values);
-  float rows[4 * kMaxClustersPerScan];
   std::size_t size = 0;
   for (const RangeCluster& cluster : clusters_) {
-    rows[size++] = cluster.position_samples;
-    rows[size++] = static_cast<float>(cluster.weight);
-    rows[size++] = static_cast<float>(cluster.first_sample);
-    rows[size++] = static_cast<float>(cluster.last_sample);
+    work_[size++] = cluster.position_samples;
+    work_[size++] = static_cast<float>(cluster.weight);
+    work_[size++] = static_cast<float>(cluster.first_sample);
+    work_[size++] = static_cast<float>(cluster.last_sample);
   }
-  taps_(TapId::kRangeClusters, {rows, size});
+  taps_(TapId::kRangeClusters, {work_.data(), size});
 }
 
 void SensorRadarNode::tap_report(const link::Detections& out) const {
-  if (!taps_.enabled()) return;
+  if (!taps_.wants(TapId::kDetections)) return;
   float rows[2 * kMaxDetectionsPerNode];
   std::size_t size = 0;
   for (const link::Detection& detection : out.detections) {

@@ -8,8 +8,8 @@
 namespace echofuse::signal {
 namespace {
 
-constexpr int kShiftsAtOnce = 4;  ///< one load of the reference serves four shifts
-constexpr int kOutputsAtOnce = 4;
+constexpr int kTile =
+    8;  ///< neighbouring sums made at once: as many accumulators and samples fit into 32 registers
 constexpr int kProductsPerBlock = 64;  ///< partial sums keep the rounding error of a float sum small
 
 constexpr float kLeastFraction = 1e-7f;  ///< [sample] less than float32 can tell from 0 beside 1
@@ -26,53 +26,51 @@ float sum_of_products(const float* envelope, const float* reference, int count) 
   return sum;
 }
 
-/// The same at four neighbouring shifts, added to sums: every sample is loaded once for all of them.
-void add_products_at_4_shifts(const float* envelope, const float* reference, int count, float* sums) {
-  for (int begin = 0; begin < count; begin += kProductsPerBlock) {
-    const int end = std::min(count, begin + kProductsPerBlock);
-    float block_0 = 0.0f, block_1 = 0.0f, block_2 = 0.0f, block_3 = 0.0f;
-    const auto add = [&](float value, float at_0, float at_1, float at_2, float at_3) {
-      block_0 += value * at_0;
-      block_1 += value * at_1;
-      block_2 += value * at_2;
-      block_3 += value * at_3;
-    };
-    float a = envelope[begin];
-    float b = envelope[begin + 1];
-    float c = envelope[begin + 2];
-    int k = begin;
-    for (; k + 4 <= end; k += 4) {
-      const float d = envelope[k + 3];
-      add(reference[k], a, b, c, d);
-      a = envelope[k + 4];
-      add(reference[k + 1], b, c, d, a);
-      b = envelope[k + 5];
-      add(reference[k + 2], c, d, a, b);
-      c = envelope[k + 6];
-      add(reference[k + 3], d, a, b, c);
+/// sums[j] = sum_i taps[i] input[i + j] for kTile neighbours j: every tap and every sample is loaded once for all of
+/// them. The window goes round instead of being moved; the pragmas turn its places and the sums into registers.
+inline void filter_tile(const float* input, const float* taps, int n_taps, float* sums) {
+  float sum[kTile];
+  float window[kTile];  // input[i + j] at place (i + j) % kTile
+#pragma GCC unroll 8
+  for (int j = 0; j < kTile; ++j) {
+    sum[j] = 0.0f;
+    window[j] = input[j];
+  }
+  int i = 0;
+  for (; i + kTile <= n_taps; i += kTile) {
+#pragma GCC unroll 8
+    for (int t = 0; t < kTile; ++t) {
+      window[(t + kTile - 1) % kTile] = input[i + t + kTile - 1];
+      const float tap = taps[i + t];
+#pragma GCC unroll 8
+      for (int j = 0; j < kTile; ++j) sum[j] += tap * window[(t + j) % kTile];
     }
-    for (; k < end; ++k) add(reference[k], envelope[k], envelope[k + 1], envelope[k + 2], envelope[k + 3]);
-    sums[0] += block_0;
-    sums[1] += block_1;
-    sums[2] += block_2;
-    sums[3] += block_3;
+  }
+  for (; i < n_taps; ++i) {
+    const float tap = taps[i];
+#pragma GCC unroll 8
+    for (int j = 0; j < kTile; ++j) sum[j] += tap * input[i + j];
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < kTile; ++j) sums[j] = sum[j];
+}
+
+/// The sum of products at kTile neighbouring shifts, added to sums.
+void add_products_at_shifts(const float* envelope, const float* reference, int count, float* sums) {
+  for (int begin = 0; begin < count; begin += kProductsPerBlock) {
+    float block[kTile];
+    filter_tile(envelope + begin, reference + begin, std::min(count - begin, kProductsPerBlock), block);
+    for (int j = 0; j < kTile; ++j) sums[j] += block[j];
   }
 }
 
-/// Four neighbouring outputs of a filter: every tap is loaded once for all of them.
-void filter_4(const float* input, const float* taps, int n_taps, float* output) {
-  float sum_0 = 0.0f, sum_1 = 0.0f, sum_2 = 0.0f, sum_3 = 0.0f;
-  for (int i = 0; i < n_taps; ++i) {
-    const float tap = taps[i];
-    sum_0 += tap * input[i];
-    sum_1 += tap * input[i + 1];
-    sum_2 += tap * input[i + 2];
-    sum_3 += tap * input[i + 3];
-  }
-  output[0] = sum_0;
-  output[1] = sum_1;
-  output[2] = sum_2;
-  output[3] = sum_3;
+/// One output of a filter whose taps may lie outside of the input, from input[source] on.
+float at_end(Span<const float> input, Span<const float> taps, int n_taps, int source) {
+  const int end = std::min(n_taps, static_cast<int>(input.size()) - source);
+  float sum = 0.0f;
+  for (int i = std::max(0, -source); i < end; ++i)
+    sum += taps[static_cast<std::size_t>(i)] * input[static_cast<std::size_t>(source + i)];
+  return sum;
 }
 
 /// The reference's samples [first, last) whose partner at `shift` lies inside the envelope.
@@ -103,15 +101,15 @@ void correlate(Span<const float> envelope, Span<const float> reference, Range ra
   const int n_samples = static_cast<int>(envelope.size());
   std::fill(products, products + n_shifts, 0.0f);
   int i = 0;
-  for (; i + kShiftsAtOnce <= n_shifts; i += kShiftsAtOnce) {
+  for (; i + kTile <= n_shifts; i += kTile) {
     const int shift = lowest + i;
     // Where all shifts have partners at once; then, for each, the few products at the ends.
     const Range common{inside(range, shift, n_samples).first,
-                       inside(range, shift + kShiftsAtOnce - 1, n_samples).last};
+                       inside(range, shift + kTile - 1, n_samples).last};
     if (common.first >= common.last) break;
-    add_products_at_4_shifts(envelope.data() + (common.first + shift), reference.data() + common.first,
-                             common.last - common.first, products + i);
-    for (int j = 0; j < kShiftsAtOnce; ++j) {
+    add_products_at_shifts(envelope.data() + (common.first + shift), reference.data() + common.first,
+                           common.last - common.first, products + i);
+    for (int j = 0; j < kTile; ++j) {
       const Range own = inside(range, shift + j, n_samples);
       add_range(envelope, reference, {own.first, common.first}, shift + j, products + i + j);
       add_range(envelope, reference, {common.last, own.last}, shift + j, products + i + j);
@@ -242,19 +240,13 @@ Status Aligner::shift(Span<const float> input, float shift_samples, Span<float> 
     n_taps = 2 * config_.interpolator_half_length_samples;
     offset = whole - config_.interpolator_half_length_samples + 1;
   }
-  for (int k = 0; k < n_samples; ++k) {
-    const int source = k + offset;
-    if (source >= 0 && source + n_taps + kOutputsAtOnce <= n_samples + 1 && k + kOutputsAtOnce <= n_samples) {
-      filter_4(input.data() + source, taps.data(), n_taps, output.data() + k);
-      k += kOutputsAtOnce - 1;
-      continue;
-    }
-    const int end = std::min(n_taps, n_samples - source);
-    float sum = 0.0f;
-    for (int i = std::max(0, -source); i < end; ++i)
-      sum += taps[static_cast<std::size_t>(i)] * input[static_cast<std::size_t>(source + i)];
-    output[static_cast<std::size_t>(k)] = sum;
-  }
+  const Range inner = inside({0, n_samples}, offset, n_samples - n_taps + 1);  // all taps inside the input
+  int k = 0;
+  for (; k < std::min(inner.first, n_samples); ++k)
+    output[static_cast<std::size_t>(k)] = at_end(input, taps, n_taps, k + offset);
+  for (; k + kTile <= inner.last; k += kTile)
+    filter_tile(input.data() + (k + offset), taps.data(), n_taps, output.data() + k);
+  for (; k < n_samples; ++k) output[static_cast<std::size_t>(k)] = at_end(input, taps, n_taps, k + offset);
   return Status::kOk;
 }
 

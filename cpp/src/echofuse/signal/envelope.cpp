@@ -8,7 +8,8 @@
 namespace echofuse::signal {
 namespace {
 
-constexpr int kOutputsAtOnce = 4;
+constexpr int kTile = 8;       ///< neighbouring samples made at once
+constexpr int kUsualTaps = 6;  ///< half length 11 or 12
 
 bool is_half_length(int value) { return value >= 1 && value <= static_cast<int>(kMaxFilterHalfLength); }
 
@@ -23,6 +24,21 @@ float at_or_zero(Span<const float> values, int index) {
 }
 
 float square(float value) { return value * value; }
+
+/// kTile neighbouring samples, all taps inside the scan: every tap is loaded once for all of them, and where their
+/// number is a constant (not 0) every sample as well.
+template <int kTaps>
+void hilbert_tile(const float* scan, const float* taps, int n_taps, float* envelope) {
+  float sum[kTile] = {};
+#pragma GCC unroll 8
+  for (int i = 0; i < (kTaps > 0 ? kTaps : n_taps); ++i) {
+    const float tap = taps[i];
+#pragma GCC unroll 8
+    for (int j = 0; j < kTile; ++j) sum[j] += tap * (scan[j - 1 - 2 * i] - scan[j + 1 + 2 * i]);
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < kTile; ++j) envelope[j] = std::sqrt(square(scan[j]) + square(sum[j]));
+}
 
 }  // namespace
 
@@ -79,9 +95,12 @@ void Envelope::hilbert(Span<const float> scan, Span<float> envelope) const {
   const int n_samples = static_cast<int>(scan.size());
   int k = 0;
   while (k < n_samples) {
-    if (k >= half_length_ && k + kOutputsAtOnce <= n_samples - half_length_) {
-      hilbert_4(scan.data() + k, envelope.data() + k);
-      k += kOutputsAtOnce;
+    if (k >= half_length_ && k + kTile <= n_samples - half_length_) {
+      if (n_taps_ == kUsualTaps)
+        hilbert_tile<kUsualTaps>(scan.data() + k, taps_.data(), n_taps_, envelope.data() + k);
+      else
+        hilbert_tile<0>(scan.data() + k, taps_.data(), n_taps_, envelope.data() + k);
+      k += kTile;
       continue;
     }
     float quadrature = 0.0f;
@@ -92,24 +111,6 @@ void Envelope::hilbert(Span<const float> scan, Span<float> envelope) const {
         std::sqrt(square(scan[static_cast<std::size_t>(k)]) + square(quadrature));
     ++k;
   }
-}
-
-/// Four neighbouring samples, all taps inside the scan: every tap is loaded once for all of them.
-void Envelope::hilbert_4(const float* scan, float* envelope) const {
-  float sum_0 = 0.0f, sum_1 = 0.0f, sum_2 = 0.0f, sum_3 = 0.0f;
-  const float* before = scan - 1;
-  const float* after = scan + 1;
-  for (int i = 0; i < n_taps_; ++i, before -= 2, after += 2) {
-    const float tap = taps_[static_cast<std::size_t>(i)];
-    sum_0 += tap * (before[0] - after[0]);
-    sum_1 += tap * (before[1] - after[1]);
-    sum_2 += tap * (before[2] - after[2]);
-    sum_3 += tap * (before[3] - after[3]);
-  }
-  envelope[0] = std::sqrt(square(scan[0]) + square(sum_0));
-  envelope[1] = std::sqrt(square(scan[1]) + square(sum_1));
-  envelope[2] = std::sqrt(square(scan[2]) + square(sum_2));
-  envelope[3] = std::sqrt(square(scan[3]) + square(sum_3));
 }
 
 void Envelope::square_low_pass(Span<const float> scan, Span<float> envelope) const {

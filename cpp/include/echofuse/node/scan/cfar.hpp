@@ -60,8 +60,8 @@ class CfarDetector {
   void global_average(Span<const float> amplitude, Span<float> threshold) const;
   void ordered_statistic(Span<const float> amplitude, Span<float> threshold) const;
   void double_threshold_buffer(Span<const float> amplitude, Span<float> threshold) const;
-  void buffer_pass(const float* amplitude, float* threshold, int step, int n_samples,
-                   float global_power) const;
+  template <int kStep>
+  void buffer_pass(const float* amplitude, float* threshold, int n_samples, float global_power) const;
   int rank(int n_cells) const;
 
   bool configured_ = false;

@@ -14,31 +14,32 @@ template <std::size_t kMaxWindow>
 class SlidingSum {
  public:
   /// As if `window` zeros had been pushed; 1 <= window <= kMaxWindow.
-  explicit SlidingSum(std::size_t window) : window_(window) {
+  explicit SlidingSum(std::size_t window) : end_(cells_.data() + window) {
     ECHOFUSE_CHECK(window >= 1 && window <= kMaxWindow);
   }
+  SlidingSum(const SlidingSum&) = delete;
+  SlidingSum& operator=(const SlidingSum&) = delete;
 
   void push(float value) {
-    values_[next_] = value;
+    *next_ = value;
     block_sum_ += value;
-    if (++next_ < window_) return;
+    if (++next_ < end_) return;
     float sum = 0.0f;
-    for (std::size_t i = window_; i > 0; --i) {
-      sum += values_[i - 1];
-      sums_to_end_[i - 1] = sum;
+    while (next_ > cells_.data()) {
+      sum += *--next_;
+      *next_ = sum;
     }
     block_sum_ = 0.0f;
-    next_ = 0;
   }
 
-  float value() const { return block_sum_ + sums_to_end_[next_]; }
+  float value() const { return block_sum_ + *next_; }
 
  private:
-  std::size_t window_;
-  std::size_t next_ = 0;                         ///< place of the next value in this block
-  float block_sum_ = 0.0f;                       ///< of this block so far
-  std::array<float, kMaxWindow> values_{};       ///< this block
-  std::array<float, kMaxWindow> sums_to_end_{};  ///< of the last block, from each place to its end
+  /// Before next_ this block's values; from it on the last block's sums, from each place to its end.
+  std::array<float, kMaxWindow> cells_{};
+  float* next_ = cells_.data();  ///< place of the next value
+  float* end_;                   ///< of the window
+  float block_sum_ = 0.0f;       ///< of this block so far
 };
 
 }  // namespace echofuse::node

@@ -59,7 +59,7 @@ Status PhdTracker::process(Span<const estimation::Position> measurements, float 
 }
 
 void PhdTracker::show_peaks() const {
-  if (!sink_.enabled()) return;
+  if (!sink_.wants(TapId::kPeaks)) return;
   std::array<float, kMaxTargets * 5> rows{};
   std::size_t n = 0;
   for (const estimation::MixtureComponent& c : mixture_.components)

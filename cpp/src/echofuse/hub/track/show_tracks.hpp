@@ -10,7 +10,7 @@ namespace echofuse::hub {
 
 /// The tap kTracks: (n, 7) id, state, x, y, vx, vy, frames since the last update.
 inline void show_tracks(const TapSink& sink, const link::Tracks& tracks) {
-  if (!sink.enabled()) return;
+  if (!sink.wants(TapId::kTracks)) return;
   std::array<float, kMaxTracks * 7> rows{};
   std::size_t n = 0;
   for (const link::Track& track : tracks.tracks) {

@@ -6,6 +6,7 @@
 
 #include "echofuse/core/compensated_sum.hpp"
 #include "echofuse/core/limits.hpp"
+#include "echofuse/core/magnitude.hpp"
 #include "echofuse/node/scan/sliding_sum.hpp"
 #include "echofuse/node/scan/sorted_window.hpp"
 
@@ -18,12 +19,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 float power_at(Span<const float> amplitude, int k) {
   const float value = amplitude[static_cast<std::size_t>(k)];
   return value * value;
-}
-
-bool all_usable(Span<const float> values) {
-  for (const float value : values)
-    if (!(std::abs(value) <= kMaxMagnitude)) return false;
-  return true;
 }
 
 /// Root of sum_{i<rank} ln(1 + alpha / (N - i)) = -ln P_fa by Newton from 0: the left side is concave, so
@@ -110,7 +105,7 @@ Status CfarDetector::process(Span<const float> amplitude, Span<float> threshold,
   if (!configured_) return Status::kNotConfigured;
   const std::size_t n_samples = amplitude.size();
   if (threshold.size() != n_samples || decisions.size() != n_samples) return Status::kInvalidInput;
-  if (n_samples < static_cast<std::size_t>(min_samples()) || !all_usable(amplitude))
+  if (n_samples < static_cast<std::size_t>(min_samples()) || !all_within(amplitude, kMaxMagnitude))
     return Status::kInvalidInput;
   switch (config_.method) {
     case CfarMethod::kCellAveraging:
@@ -126,6 +121,7 @@ Status CfarDetector::process(Span<const float> amplitude, Span<float> threshold,
       double_threshold_buffer(amplitude, threshold);
       break;
   }
+#pragma GCC unroll 8
   for (std::size_t k = 0; k < n_samples; ++k)
     decisions[k] = amplitude[k] * amplitude[k] > threshold[k] ? std::uint8_t{1} : std::uint8_t{0};
   return Status::kOk;
@@ -207,16 +203,19 @@ void CfarDetector::ordered_statistic(Span<const float> amplitude, Span<float> th
 void CfarDetector::double_threshold_buffer(Span<const float> amplitude, Span<float> threshold) const {
   const int n_samples = static_cast<int>(amplitude.size());
   CompensatedSum power;
+#pragma GCC unroll 8
   for (int k = 0; k < n_samples; ++k) power.add(power_at(amplitude, k));
   const float global_power = power.value() / static_cast<float>(n_samples);
-  std::fill(threshold.begin(), threshold.end(), kInfinity);
-  buffer_pass(amplitude.data(), threshold.data(), 1, n_samples, global_power);
-  buffer_pass(amplitude.data() + (n_samples - 1), threshold.data() + (n_samples - 1), -1, n_samples,
-              global_power);
+  std::fill_n(threshold.begin(), config_.buffer_samples, kInfinity);
+  buffer_pass<1>(amplitude.data(), threshold.data(), n_samples, global_power);
+  buffer_pass<-1>(amplitude.data() + (n_samples - 1), threshold.data() + (n_samples - 1), n_samples,
+                  global_power);
 }
 
-/// Algorithm 1 in one direction; the first buffer_samples are not tested. threshold: lowered, never raised.
-void CfarDetector::buffer_pass(const float* amplitude, float* threshold, int step, int n_samples,
+/// Algorithm 1 in one direction; the first buffer_samples are not tested. threshold: written by the pass forward, then
+/// lowered by the one backward.
+template <int kStep>
+void CfarDetector::buffer_pass(const float* amplitude, float* threshold, int n_samples,
                                float global_power) const {
   // Copies, which no store through `threshold` can change: they stay in registers.
   const float local_factor = config_.local_factor;
@@ -228,29 +227,33 @@ void CfarDetector::buffer_pass(const float* amplitude, float* threshold, int ste
   SlidingSum<kMaxCfarBuffer> buffer(static_cast<std::size_t>(config_.buffer_samples));
   float previous = 0.0f;
   int k = 0;
-  for (; k < config_.buffer_samples; ++k, amplitude += step, threshold += step) {
+  for (; k < config_.buffer_samples; ++k, amplitude += kStep, threshold += kStep) {
     previous = *amplitude * *amplitude;
     buffer.push(previous);
   }
   bool frozen = false;
   float frozen_power = 0.0f;
-  float local_power = buffer.value() * per_cell;
+  float level =
+      local_factor * (buffer.value() * per_cell) + global_level;  // of the local or the frozen power
   int rises = 0;
-  for (; k < n_samples; ++k, amplitude += step, threshold += step) {
+  for (; k < n_samples; ++k, amplitude += kStep, threshold += kStep) {
     const float power = *amplitude * *amplitude;
-    const float level = local_factor * (frozen ? frozen_power : local_power) + global_level;
-    if (level < *threshold) *threshold = level;
+    if (kStep > 0 || level < *threshold) *threshold = level;
     if (!(power > level)) {
       buffer.push(power);
-      local_power = buffer.value() * per_cell;
+      const float local_power = buffer.value() * per_cell;
       if (power > previous + rise)
         ++rises;
       else if (power < previous - fall)
         rises = 0;
-      if (rises > max_rises && !frozen) {
-        frozen = true;
-        frozen_power = local_power;
-      } else if (frozen && local_power < frozen_power) {
+      if (!frozen) {
+        level = local_factor * local_power + global_level;
+        if (rises > max_rises) {
+          frozen = true;
+          frozen_power = local_power;
+        }
+      } else if (local_power < frozen_power) {
+        level = local_factor * local_power + global_level;
         frozen = false;
         rises = 0;
       }

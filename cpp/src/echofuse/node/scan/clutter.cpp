@@ -90,12 +90,14 @@ Status ClutterFilter::process(Span<const float> samples, Span<float> residual) {
     subtract_shadowed(samples, residual);
     return Status::kOk;
   }
-  const float mean_weight = 1.0f / static_cast<float>(n_averaged_ + 1);
-  float weight = 0.0f;
-  if (learns) {
-    weight = follows ? std::max(1.0f - config_.averaging_factor, mean_weight) : mean_weight;
-    n_averaged_ = std::min(n_averaged_ + 1, 1 << 20);
+  if (!learns) {
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < n_samples_; ++k) residual[k] = samples[k] - memory_[k];
+    return Status::kOk;
   }
+  const float mean_weight = 1.0f / static_cast<float>(n_averaged_ + 1);
+  const float weight = follows ? std::max(1.0f - config_.averaging_factor, mean_weight) : mean_weight;
+  n_averaged_ = std::min(n_averaged_ + 1, 1 << 20);
   for (std::size_t k = 0; k < n_samples_; ++k) {
     const float change = samples[k] - memory_[k];
     memory_[k] += weight * change;

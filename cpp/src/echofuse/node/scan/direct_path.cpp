@@ -11,6 +11,21 @@ namespace {
 
 constexpr int kMinNoiseSamples = 8;  ///< fewer say nothing about the noise
 
+/// Place of the greatest value, the first of equals.
+int strongest(Span<const float> values) {
+  int place = 0;
+  float greatest = values[0];
+  const int n_values = static_cast<int>(values.size());
+#pragma GCC unroll 8
+  for (int k = 1; k < n_values; ++k) {
+    const float value = values[static_cast<std::size_t>(k)];
+    if (!(value > greatest)) continue;
+    greatest = value;
+    place = k;
+  }
+  return place;
+}
+
 bool is_search(DirectPathSearch search) {
   return search == DirectPathSearch::kSerialBackward || search == DirectPathSearch::kThresholdCrossing ||
          search == DirectPathSearch::kJumpBackSearchForward;
@@ -42,7 +57,7 @@ Status DirectPathSearcher::process(Span<const float> envelope, DirectPath& direc
   direct_path = DirectPath{};
   if (threshold_factor_ == 0.0f) return Status::kNotConfigured;
   if (envelope.empty()) return Status::kInvalidInput;
-  const int peak = static_cast<int>(std::max_element(envelope.begin(), envelope.end()) - envelope.begin());
+  const int peak = strongest(envelope);
   const int start = std::max(0, peak - config_.window_samples);
   const int n_noise = std::min(start, config_.noise_samples);
   if (n_noise < kMinNoiseSamples) return Status::kOk;

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "echofuse/core/span.hpp"
+#include "echofuse/link/register_server.hpp"
+
+namespace echofuse::hub {
+
+/// The members of SensorRadarHubConfig as registers, each under its name in a site file, and of each node.
+Span<const link::RegisterField> config_registers();
+
+}  // namespace echofuse::hub

@@ -1,0 +1,137 @@
+#include "echofuse/hub/registers.hpp"
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include "echofuse/hub/hub.hpp"
+
+namespace echofuse::hub {
+namespace {
+
+#define FIELD(member) ECHOFUSE_REGISTER(SensorRadarHubConfig, member)
+
+/// A member of NodeSite, in each of the configuration's nodes.
+constexpr link::RegisterField of_each_node(link::RegisterField field) {
+  field.offset = static_cast<std::uint16_t>(field.offset + offsetof(SensorRadarHubConfig, nodes));
+  field.repeat = static_cast<std::uint8_t>(kMaxNodes);
+  field.stride = sizeof(NodeSite);
+  return field;
+}
+
+constexpr std::array kFields{
+    FIELD(n_nodes),
+    FIELD(frame_period_s),
+    FIELD(aid_missed_frames),
+    FIELD(tracker),
+    FIELD(frame_assembler.deadline_us),
+    FIELD(frame_assembler.dead_after_frames),
+    FIELD(frame_assembler.resync_after_reports),
+    FIELD(frame_assembler.max_delay_s),
+    FIELD(ellipse.refinement),
+    FIELD(ellipse.max_iterations),
+    FIELD(ellipse.max_step_m),
+    FIELD(ellipse.body_radius_m),
+    FIELD(ellipse.robust_scale_m),
+    FIELD(selection.method),
+    FIELD(selection.residual),
+    FIELD(selection.nodes_per_tuple),
+    FIELD(selection.min_weight),
+    FIELD(selection.max_range_residual_m),
+    FIELD(selection.max_equation_residual_m3),
+    FIELD(selection.coarse_residual_m),
+    FIELD(selection.support_gate_m),
+    FIELD(selection.min_support),
+    FIELD(selection.min_support_fraction),
+    FIELD(selection.min_own_support),
+    FIELD(selection.echo_tail_m),
+    FIELD(selection.track_aided),
+    FIELD(selection.track_gate_m),
+    FIELD(selection.track_min_support),
+    FIELD(selection.track_min_own_support),
+    FIELD(point_clusters.distance),
+    FIELD(point_clusters.threshold_m),
+    FIELD(phd.detection_probability),
+    FIELD(phd.survival_probability),
+    FIELD(phd.clutter_per_frame),
+    FIELD(phd.birth_per_frame),
+    FIELD(phd.area_m2),
+    FIELD(phd.measurement_std_m),
+    FIELD(phd.acceleration_density_m2ps3),
+    FIELD(phd.newborn_velocity_std_mps),
+    FIELD(phd.particles_per_target),
+    FIELD(phd.newborn_per_measurement),
+    FIELD(phd.mass_average_frames),
+    FIELD(phd.resampling),
+    FIELD(phd.seed),
+    FIELD(em.initialisation),
+    FIELD(em.restarts),
+    FIELD(em.initial_std_m),
+    FIELD(em.covariance_floor_m2),
+    FIELD(em.background_density_per_m2),
+    FIELD(em.max_iterations),
+    FIELD(em.tolerance_m),
+    FIELD(tracks.association),
+    FIELD(tracks.update),
+    FIELD(tracks.gate_m),
+    FIELD(tracks.cost_max_m),
+    FIELD(tracks.gate_sigma),
+    FIELD(tracks.silent_gate_growth_mps),
+    FIELD(tracks.silent_gate_max_m),
+    FIELD(tracks.birth_exclusion_m),
+    FIELD(tracks.confirm_updates),
+    FIELD(tracks.silent_time_min_s),
+    FIELD(tracks.silent_time_per_confirmed),
+    FIELD(tracks.silent_time_max_s),
+    FIELD(tracks.silent_velocity_time_s),
+    FIELD(tracks.acceleration_density_m2ps3),
+    FIELD(tracks.measurement_std_m),
+    FIELD(tracks.velocity_std_mps),
+    FIELD(ranges.detection_probability),
+    FIELD(ranges.path_std_m),
+    FIELD(ranges.clutter_ahead_per_m),
+    FIELD(ranges.clutter_body_per_m),
+    FIELD(ranges.clutter_echo_per_m),
+    FIELD(ranges.clutter_far_per_m),
+    FIELD(ranges.blind_path_m),
+    FIELD(ranges.gate_m),
+    FIELD(ranges.gate_max_m),
+    FIELD(ranges.echo_tail_m),
+    FIELD(ranges.acceleration_density_m2ps3),
+    FIELD(ranges.newborn_position_std_m),
+    FIELD(ranges.newborn_velocity_std_mps),
+    FIELD(ranges.max_speed_mps),
+    FIELD(ranges.birth_step_m),
+    FIELD(ranges.birth_score),
+    FIELD(ranges.max_births),
+    FIELD(ranges.birth_exclusion_m),
+    FIELD(ranges.merge_distance_m),
+    FIELD(ranges.unconfirmed_memory),
+    FIELD(ranges.confirmed_memory),
+    FIELD(ranges.confirm_score),
+    FIELD(ranges.confirm_frames),
+    FIELD(ranges.confirm_nodes),
+    FIELD(ranges.confirmed_bonus),
+    FIELD(ranges.shared_score),
+    FIELD(ranges.max_score),
+    FIELD(ranges.drop_score),
+    FIELD(ranges.end_score),
+    FIELD(ranges.silent_nodes),
+    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.min_x_m),
+    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.min_y_m),
+    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.max_x_m),
+    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.max_y_m),
+    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, node_id, "nodes.#.node_id")),
+    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, tx.x_m, "nodes.#.tx.x_m")),
+    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, tx.y_m, "nodes.#.tx.y_m")),
+    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, rx.x_m, "nodes.#.rx.x_m")),
+    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, rx.y_m, "nodes.#.rx.y_m")),
+};
+
+#undef FIELD
+
+}  // namespace
+
+Span<const link::RegisterField> config_registers() { return kFields; }
+
+}  // namespace echofuse::hub

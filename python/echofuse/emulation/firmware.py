@@ -1,0 +1,177 @@
+"""Nodes and hub of one site as firmware: scans in by the front-ends, everything else over the link."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echofuse.emulation import codec
+from echofuse.emulation.codec import FrameReader, Transfer
+from echofuse.emulation.lockstep import PROFILE_TOTAL, Board, StepOutput
+from echofuse.errors import TargetError
+
+HUB_ID = 0xF000
+HARNESS_ID = 0xF001  # who writes the registers
+
+_CONFIG_STEP_US = 1  # the clock while a machine is configured: before everything
+
+
+class Machine:
+    """One board, what it says on the link, and what it counts."""
+
+    def __init__(self, board: Board, node_id: int) -> None:
+        self.board = board
+        self.node_id = node_id
+        self.health: dict[str, int] = {}
+        self.profiles: list[
+            dict[int, int]
+        ] = []  # ticks by TapId that ended a stage, 255 for all; one a scan or frame
+        self.stack_bytes = 0
+        self._reader = FrameReader()
+        self._requests: Counter[int] = Counter()
+
+    def step(
+        self,
+        now_us: int,
+        link: bytes = b"",
+        *,
+        scan: NDArray[np.float32] | None = None,
+        scan_time_us: int = 0,
+        taps: bool = False,
+    ) -> tuple[StepOutput, list[Transfer]]:
+        """Let the board work at one moment; what it did, and the transfers that it put on the link."""
+        output = self.board.step(now_us, link, scan=scan, scan_time_us=scan_time_us, taps=taps)
+        transfers = list(self._reader.feed(output.link))
+        for transfer in transfers:
+            if transfer.port == codec.NODE_HEALTH and transfer.kind == codec.MESSAGE:
+                self.health = codec.parse_health(transfer.payload)
+        if output.profile:
+            self.profiles.append(output.profile)
+            self.stack_bytes = output.stack_bytes or 0
+        return output, transfers
+
+    def write_register(self, name: str, value: object) -> object:
+        """Write a register over the link; what it says then."""
+        return self._access(name, codec.register_write(name, value))
+
+    def read_register(self, name: str) -> object:
+        """Read a register over the link; None when there is none of this name."""
+        return self._access(name, codec.register_read(name))
+
+    def configure(self, config: Any) -> None:
+        """Write every member that differs from its default, put them in force, and see that they are."""
+        for name, value in _differences(config, type(config)()):
+            said = self.write_register(name, value)
+            if said is None or not np.isclose(float(said), float(value), rtol=1e-6):  # type: ignore[arg-type]
+                raise TargetError(f"{self.board.name}: register {name} says {said} and not {value}")
+        self.write_register("echofuse.apply", False)
+        if self.write_register("echofuse.apply", True) is not True:
+            self.step(_CONFIG_STEP_US)
+        if self.read_register("echofuse.apply") is not True:
+            raise TargetError(f"{self.board.name}: refuses the site's configuration")
+
+    def _access(self, name: str, request: bytes) -> object:
+        service = codec.REGISTER_ACCESS
+        self._requests[service] += 1
+        asked = Transfer(HARNESS_ID, service, self._requests[service], request, codec.REQUEST, self.node_id)
+        _, transfers = self.step(_CONFIG_STEP_US, codec.frame(asked))
+        for transfer in transfers:
+            if transfer.kind == codec.RESPONSE and transfer.transfer_id == asked.transfer_id:
+                return codec.parse_register(transfer.payload)
+        raise TargetError(f"{self.board.name}: no answer about the register {name}")
+
+
+def _differences(value: Any, default: Any, where: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield (register, value) for every member that a configuration sets."""
+    if hasattr(value, "fields"):
+        for name in value.fields():
+            if name != "node_id" or where:  # a node's own id is its board's
+                yield from _differences(
+                    getattr(value, name), getattr(default, name), f"{where}.{name}".lstrip(".")
+                )
+    elif isinstance(value, Sequence):
+        for index, (item, plain) in enumerate(zip(value, default, strict=True)):
+            yield from _differences(item, plain, f"{where}.{index}")
+    elif value != default:
+        yield where, np.uint64(value) if where.endswith("seed") else value
+
+
+class FirmwareRadar:
+    """A site's nodes and hub on boards, fed scan by scan. A link without faults joins them in no time."""
+
+    def __init__(self, open_board: Callable[[str, str, int], Board]) -> None:
+        """open_board: starts the firmware of a role ("node", "hub") by a name and a node id."""
+        self._open_board = open_board
+        self.nodes: dict[int, Machine] = {}
+        self.names: dict[int, str] = {}
+        self.hub = Machine(open_board("hub", "hub", HUB_ID), HUB_ID)
+        self._to_nodes: dict[int, bytes] = {}
+        self._now_us = _CONFIG_STEP_US
+        self._tracks: list[tuple[int, int, NDArray[np.void]]] = []
+
+    def add_node(self, name: str, node_id: int, config: Any, empty_room: Sequence[NDArray[Any]]) -> None:
+        """Start a node, write its configuration, and show it the empty room, (n_scans, n_samples)."""
+        machine = self.nodes[node_id] = Machine(self._open_board("node", name, node_id), node_id)
+        self.names[node_id] = name
+        self._to_nodes[node_id] = b""
+        machine.configure(config)
+        machine.write_register("echofuse.empty_room_scans_left", np.uint16(len(empty_room)))
+        for scan in empty_room:
+            machine.step(_CONFIG_STEP_US, scan=np.ascontiguousarray(scan, np.float32))
+        if machine.read_register("echofuse.empty_room_scans_left") != 0:
+            raise TargetError(
+                f"{machine.board.name}: has not taken the {len(empty_room)} scans of the empty room"
+            )
+
+    def scan(self, node_id: int, samples: NDArray[np.float32], time_us: int) -> NDArray[np.void]:
+        """Give a node its next scan (n_samples,), and the hub what it says; its detections (n,)."""
+        waiting, self._to_nodes[node_id] = self._to_nodes[node_id], b""
+        _, transfers = self.nodes[node_id].step(time_us, waiting, scan=samples, scan_time_us=time_us)
+        detections = np.zeros(0, codec.DETECTION)
+        for transfer in transfers:
+            if transfer.port == codec.DETECTIONS and transfer.kind == codec.MESSAGE:
+                _, detections = codec.parse_detections(transfer.payload)
+        self.deliver(b"".join(map(codec.frame, transfers)), time_us)
+        return detections
+
+    def deliver(self, link: bytes, now_us: int) -> None:
+        """Let the hub work at one moment, with what has arrived for it."""
+        self._now_us = now_us
+        _, transfers = self.hub.step(now_us, link)
+        for transfer in transfers:
+            if transfer.port == codec.TRACKS and transfer.kind == codec.MESSAGE:
+                self._tracks.append(codec.parse_tracks(transfer.payload))
+            elif transfer.port == codec.TIME:
+                for node_id in self._to_nodes:
+                    self._to_nodes[node_id] += codec.frame(transfer)
+
+    def take_tracks(self) -> list[tuple[int, int, NDArray[np.void]]]:
+        """Return what the hub has said since the last call: (time_us, frame, rows (n,)) a frame."""
+        taken, self._tracks = self._tracks, []
+        return taken
+
+    def counters(self) -> dict[str, dict[str, int]]:
+        """Let every machine say what it has counted, at a later moment; by machine and name."""
+        self._now_us += 1_100_000
+        self.hub.step(self._now_us)
+        for node_id, machine in self.nodes.items():
+            machine.step(self._now_us, self._to_nodes[node_id])
+            self._to_nodes[node_id] = b""
+        return {"hub": self.hub.health} | {
+            self.names[node_id]: machine.health for node_id, machine in self.nodes.items()
+        }
+
+    def instructions(self) -> dict[str, NDArray[np.int64]]:
+        """Return the ticks of each scan of all nodes ("node"), and of each frame ("hub"), in order."""
+        per_node = [[profile[PROFILE_TOTAL] for profile in node.profiles] for node in self.nodes.values()]
+        return {
+            "node": np.array(sum(per_node, []), np.int64),
+            "hub": np.array([profile[PROFILE_TOTAL] for profile in self.hub.profiles], np.int64),
+        }
+
+    def close(self) -> None:
+        """Switch everything off."""
+        for machine in (self.hub, *self.nodes.values()):
+            machine.board.close()

@@ -1,0 +1,80 @@
+"""Writes a site's configurations as a C++ header, so that firmware has them compiled in.
+
+Only what differs from the C++ structures' own defaults is written; names come from the configurations themselves.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+__all__ = ["cpp_header"]
+
+
+def cpp_header(site_name: str, nodes: Mapping[int, Any], hub: Any) -> str:
+    """Return the text of site_config.hpp.
+
+    nodes: `_core.SensorRadarNodeConfig` by node id; hub: `_core.SensorRadarHubConfig`.
+    """
+    lines = [
+        f"// The site '{' '.join(site_name.split())}', made by `echofuse export-config`. Edit the site file instead.",
+        "#pragma once",
+        "",
+        "#include <cstdint>",
+        "",
+        "#ifdef ECHOFUSE_FIRMWARE_HUB",
+        '#include "echofuse/hub/hub.hpp"',
+        "#else",
+        '#include "echofuse/node/node.hpp"',
+        "#endif",
+        "",
+        "namespace echofuse::site {",
+        "",
+        "#ifdef ECHOFUSE_FIRMWARE_HUB",
+        "inline hub::SensorRadarHubConfig hub_config() {",
+        "  hub::SensorRadarHubConfig c;",
+        *(f"  {line}" for line in _assignments(hub, type(hub)(), "c")),
+        "  return c;",
+        "}",
+        "#else",
+        "/// False when the site has no such node.",
+        "inline bool node_config(std::uint16_t node_id, node::SensorRadarNodeConfig& c) {",
+        "  switch (node_id) {",
+    ]
+    for node_id, config in nodes.items():
+        lines += [f"    case {node_id}:", "      c = node::SensorRadarNodeConfig{};"]
+        lines += [f"      {line}" for line in _assignments(config, type(config)(), "c")]
+        lines += ["      return true;"]
+    lines += [
+        "    default:",
+        "      return false;",
+        "  }",
+        "}",
+        "#endif",
+        "",
+        "}  // namespace echofuse::site",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _assignments(value: Any, default: Any, where: str) -> Iterator[str]:
+    """Yield a statement for each field of `value` that differs from `default`."""
+    if hasattr(value, "fields"):
+        for name in value.fields():
+            yield from _assignments(getattr(value, name), getattr(default, name), f"{where}.{name}")
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        for index, (item, plain) in enumerate(zip(value, default, strict=True)):
+            yield from _assignments(item, plain, f"{where}[{index}]")
+    elif value != default:
+        yield f"{where} = {_literal(value, where)};"
+
+
+def _literal(value: Any, where: str) -> str:
+    if hasattr(type(value), "__members__"):
+        return f"static_cast<decltype({where})>({int(value)}) /* {value.name} */"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    return f"{np.format_float_scientific(np.float32(value), unique=True, trim='0')}f"

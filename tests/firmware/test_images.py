@@ -1,0 +1,213 @@
+"""The bare-metal images: no heap, inside their budgets, and the same answers as in this process.
+
+They are built by `make firmware`; an image, a compiler or an emulator that is missing is an error.
+"""
+
+import os
+import struct
+import subprocess
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from board import Board
+from material import case_study
+from measure import BUDGETS, BUILD, TOLERANCE, heap_symbols, limits, measure, run
+from static_stack import Function, compilers_frames, deepest, functions, plain_name
+
+from echofuse.emulation.image_size import image_size
+from echofuse.errors import InputError
+
+IMAGES: list[dict[str, Any]] = limits()["image"]
+COMPILER = ["arm-none-eabi-g++", "-mcpu=cortex-m7", "-mthumb", "-O2", "-ffunction-sections", "-nostartfiles"]
+
+
+def names(entry: dict[str, Any]) -> str:
+    return entry["name"]
+
+
+def compiled(folder: Path, source: str) -> Path:
+    """A program that is only looked at."""
+    image = folder / "program.elf"
+    command = [
+        *COMPILER,
+        "--specs=nosys.specs",
+        "-Wl,-emain,--defsym=__dso_handle=0",
+        "-x",
+        "c++",
+        "-",
+        "-o",
+        str(image),
+    ]
+    subprocess.run(command, input=source, text=True, check=True, capture_output=True)
+    return image
+
+
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
+def test_no_image_has_a_heap_or_exceptions(entry: dict[str, Any]) -> None:
+    assert heap_symbols(BUILD / entry["file"]) == []
+
+
+def test_a_heap_would_be_seen(tmp_path: Path) -> None:
+    source = "int main(int n, char**) { volatile int* p = new int[n]; int v = *p; delete[] p; return v; }"
+    assert {"malloc", "free", "_Znaj"} <= set(heap_symbols(compiled(tmp_path, source)))
+
+
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
+def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
+    measured = measure(entry)
+    too_much = {name: measured[name] for name, most in entry["at_most"].items() if measured[name] > most}
+    assert too_much == {}
+    off = {
+        name: (budgets.get(name), value)
+        for name, value in measured.items()
+        if name not in budgets or abs(value - budgets[name]) > TOLERANCE * budgets[name]
+    }
+    assert off == {}, "budget and measured figure; `make budgets` records what is meant"
+
+
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
+def test_the_stack_in_use_is_inside_the_stack_that_the_calls_add_up_to(entry: dict[str, Any]) -> None:
+    if not entry.get("feed"):
+        pytest.skip("only its size is measured")
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
+    assert (
+        budgets["stack_painted_bytes"] <= budgets["stack_bytes"] + 64
+    )  # painted from 64 bytes below its top
+    assert budgets["stack_bytes"] <= image_size(BUILD / entry["file"]).stack_bytes
+
+
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
+def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
+    """By name, without arguments; a name with more than one frame (overloads) must have one of them."""
+    known = compilers_frames(BUILD)
+    found = functions(BUILD / entry["file"])
+    plain = subprocess.run(
+        ["arm-none-eabi-c++filt", *found], check=True, capture_output=True, text=True
+    ).stdout
+    compared = 0
+    for function, name in zip(found.values(), map(plain_name, plain.splitlines()), strict=True):
+        if "echofuse" not in name or name not in known:
+            continue
+        compared += 1
+        # The compiler leaves out padding and arguments in registers that it stores before its frame.
+        assert any(0 <= function.frame_bytes - size <= 16 for size in known[name]), name
+    assert compared > 50
+
+
+def test_a_scan_costs_the_same_in_every_run() -> None:
+    node, _ = case_study()
+    image = BUILD / "tests/firmware/images/node_pipeline.elf"
+    assert run(image, node).totals == run(image, node).totals
+
+
+def test_the_bare_node_sees_what_this_process_sees() -> None:
+    node, _ = case_study()
+    answers = run(BUILD / "tests/firmware/images/node_pipeline.elf", node).answers
+    assert len(answers) == len(node.expected)
+    for ours, theirs in zip(node.expected, answers, strict=True):
+        expected, got = (np.frombuffer(rows, "<f4").reshape(-1, 2) for rows in (ours, theirs))
+        np.testing.assert_array_equal(got[:, 1], expected[:, 1])
+        np.testing.assert_allclose(got[:, 0], expected[:, 0], rtol=0.0, atol=1e-12)
+
+
+def test_a_board_out_of_step_says_so_and_stops(tmp_path: Path) -> None:
+    with Board(BUILD / "tests/firmware/images/node_pipeline.elf", tmp_path) as board:
+        os.write(board._front_end, b"x" * 40)
+        with pytest.raises(RuntimeError, match=r"front-end out of step \(.*board.cpp:\d+\)"):
+            board._wait()
+
+
+def test_growing_out_of_the_stack_is_a_fault(tmp_path: Path) -> None:
+    """The node's image with less stack than it needs."""
+    image = BUILD / "tests/firmware/images/node_pipeline.elf"
+    data = bytearray(image.read_bytes())
+    stack_top = struct.unpack_from("<I", data, text_offset(data))[0]
+    struct.pack_into("<I", data, text_offset(data), 0x20000000 + 512)
+    assert stack_top == 0x20000000 + 4096
+    small = tmp_path / "small.elf"
+    small.write_bytes(data)
+    node, _ = case_study()
+    with Board(small, tmp_path) as board:
+        board.step(node.settings)
+        with pytest.raises(RuntimeError, match="stack overflow"):
+            board.step(node.steps[0], time_us=1)
+
+
+def text_offset(data: bytes) -> int:
+    """Where the vector table lies in the file: at the begin of the first segment."""
+    program_headers = struct.unpack_from("<I", data, 28)[0]
+    return int(struct.unpack_from("<I", data, program_headers + 4)[0])
+
+
+def test_image_size_refuses_what_is_no_image(tmp_path: Path) -> None:
+    file = tmp_path / "image.elf"
+    file.write_bytes(b"\x7fELF\x02\x01" + bytes(100))
+    with pytest.raises(InputError, match="32-bit"):
+        image_size(file)
+
+
+def test_image_size_is_that_of_the_linker() -> None:
+    image = BUILD / IMAGES[0]["file"]
+    rows = subprocess.run(["arm-none-eabi-size", image], check=True, capture_output=True, text=True).stdout
+    text, data, bss = map(int, rows.splitlines()[1].split()[:3])
+    size = image_size(image)
+    assert (size.flash_bytes, size.ram_bytes) == (text + data, data + bss)
+
+
+class TestDeepest:
+    def test_takes_the_deepest_way(self) -> None:
+        found = {
+            "main": Function(8, {"a", "b"}),
+            "a": Function(100),
+            "b": Function(16, {"c"}),
+            "c": Function(90),
+        }
+        depth = deepest(found, "main", {})
+        assert (depth.n_bytes, depth.path) == (114, ("main", "b", "c"))
+
+    def test_refuses_recursion(self) -> None:
+        with pytest.raises(ValueError, match="recursion: a -> b -> a"):
+            deepest(
+                {"main": Function(0, {"a"}), "a": Function(0, {"b"}), "b": Function(0, {"a"})}, "main", {}
+            )
+
+    def test_refuses_a_call_through_a_pointer_that_is_not_listed(self) -> None:
+        found = {"main": Function(8, indirect=True), "sink": Function(40)}
+        with pytest.raises(ValueError, match="pointer"):
+            deepest(found, "main", {})
+        assert deepest(found, "main", {"^main$": ["^sink$"]}).n_bytes == 48
+
+    def test_refuses_a_frame_of_unknown_size(self) -> None:
+        with pytest.raises(ValueError, match="unknown size"):
+            deepest({"main": Function(8, dynamic=True)}, "main", {})
+
+    def test_reads_frames_and_calls_of_real_code(self, tmp_path: Path) -> None:
+        source = """
+          extern "C" { void use(char*); [[gnu::noinline]] void leaf() { char room[200]; use(room); }
+          [[gnu::noinline]] void use(char* p) { *(volatile char*)p = 1; }
+          int main() { leaf(); return 0; } }
+        """
+        depth = deepest(functions(compiled(tmp_path, source)), "main", {})
+        assert depth.path[:2] == ("main", "leaf")
+        assert 200 + 16 <= depth.n_bytes <= 232
+
+
+@pytest.mark.parametrize(
+    ("signature", "name"),
+    [
+        (
+            "echofuse::Status echofuse::node::X::process(echofuse::Span<const float>, int) const",
+            "echofuse::node::X::process",
+        ),
+        ("void echofuse::{anonymous}::Assignment::enter(std::size_t)", "echofuse::Assignment::enter"),
+        ("echofuse::(anonymous namespace)::Assignment::enter(unsigned int)", "echofuse::Assignment::enter"),
+        ("void echofuse::f(int) [with int kStep = 1]", "echofuse::f"),
+        ("main", "main"),
+    ],
+)
+def test_plain_name(signature: str, name: str) -> None:
+    assert plain_name(signature) == name
