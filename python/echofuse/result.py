@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from echofuse.recording import Outputs, Recording, frame_digest
 
 if TYPE_CHECKING:
+    from echofuse.emulation.run import Emulation
     from echofuse.site import Site
 
 #: One row a point that the tracker was given. [m]
@@ -42,6 +43,8 @@ class RunResult:
     baseline_metrics: dict[str, float]
     counters: dict[str, dict[str, int]]  # "hub" and each node's name -> counter -> count
     stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
+    target: str = "inprocess"  # what it ran on
+    emulation: "Emulation | None" = None  # faults and counters, of an emulated run
     shown_frame: int = 0  # the frame whose stages the report shows
     shown_taps: dict[str, dict[str, NDArray[Any]]] = field(
         default_factory=dict
@@ -60,7 +63,7 @@ class RunResult:
             for frame, time_us in enumerate(self.frame_time_us)
         ]
         return Outputs(
-            target="inprocess",
+            target=self.target,
             frame_time_us=self.frame_time_us,
             frame_hash=np.frombuffer(b"".join(digests), np.uint8).reshape(-1, 32),
             detections=self.detections,
