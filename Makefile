@@ -17,7 +17,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
 PYTHON := .venv/bin/python
-SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings python \
+SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings python firmware_sim \
              \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
 CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
 
@@ -40,9 +40,12 @@ build/.installed: $(SOURCES) | .venv/.setup-run
 # What a part adds to the environment is put into the one that `run` has made.
 .venv/.setup-test .venv/.setup-firmware .venv/.setup-lint: .venv/.setup-run
 
-firmware: .venv/.setup-firmware
+# The images go beside the package, where `--target cortex-m7` looks for them.
+PACKAGE = $(shell $(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("platlib"))')/echofuse
+firmware: build .venv/.setup-firmware
 	cmake --preset cortex-m7 >/dev/null
 	cmake --build --preset cortex-m7
+	install -D -t $(PACKAGE)/firmware/cortex-m7 build/cortex-m7/firmware_sim/*.elf
 	cmake --preset cortex-m4 >/dev/null
 	cmake --build --preset cortex-m4
 

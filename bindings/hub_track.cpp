@@ -181,37 +181,53 @@ void bind_range_tracker(py::module_& m) {
   using hub::RangeTracker;
   using hub::RangeTrackerConfig;
   ConfigBinder<RangeTrackerConfig>(m, "RangeTrackerConfig", "Tracks from the nodes' paths; scores are logs.")
-      .field("detection_probability", &RangeTrackerConfig::detection_probability, "of a node, per scan")
-      .field("path_std_m", &RangeTrackerConfig::path_std_m, "[m]")
-      .field("clutter_ahead_per_m", &RangeTrackerConfig::clutter_ahead_per_m, "[1/m] behind no detection")
-      .field("clutter_body_per_m", &RangeTrackerConfig::clutter_body_per_m, "[1/m] to 1 m behind one")
-      .field("clutter_echo_per_m", &RangeTrackerConfig::clutter_echo_per_m, "[1/m] to 2.5 m")
-      .field("clutter_far_per_m", &RangeTrackerConfig::clutter_far_per_m, "[1/m] to 8 m")
-      .field("blind_path_m", &RangeTrackerConfig::blind_path_m, "[m] behind the direct path")
-      .field("gate_m", &RangeTrackerConfig::gate_m, "[m] narrowest")
-      .field("gate_max_m", &RangeTrackerConfig::gate_max_m, "[m] widest")
-      .field("echo_tail_m", &RangeTrackerConfig::echo_tail_m, "[m]")
+      .field("detection_probability", &RangeTrackerConfig::detection_probability, "in the clear")
+      .field("far_detection_probability", &RangeTrackerConfig::far_detection_probability,
+             "in the clear, more than far_m behind the first")
+      .field("shadowed_detection_probability", &RangeTrackerConfig::shadowed_detection_probability,
+             "with somebody in the way")
+      .field("far_shadowed_detection_probability", &RangeTrackerConfig::far_shadowed_detection_probability,
+             "with somebody in the way, far")
+      .field("shadow_radius_m", &RangeTrackerConfig::shadow_radius_m,
+             "[m] nearer to a leg, somebody is in the way")
+      .field("penumbra_m", &RangeTrackerConfig::penumbra_m, "[m] nearer, half in the way")
+      .field("path_scale_m", &RangeTrackerConfig::path_scale_m, "[m] mean deviation")
+      .field("path_std_m", &RangeTrackerConfig::path_std_m, "[m] of the filters")
+      .field("visible_path_m", &RangeTrackerConfig::visible_path_m,
+             "[m] behind the direct path; nobody is seen nearer")
+      .field("nearest_path_m", &RangeTrackerConfig::nearest_path_m,
+             "[m] behind the direct path the nearest detections are")
+      .field("shared_path_m", &RangeTrackerConfig::shared_path_m,
+             "[m] two people nearer in path may be one detection")
+      .field("shared_score", &RangeTrackerConfig::shared_score, "of the one without")
+      .field("gate_m", &RangeTrackerConfig::gate_m, "[m] of path")
+      .field("clutter_ahead_per_m", &RangeTrackerConfig::clutter_ahead_per_m, "[1/m] behind nobody")
+      .field("clutter_near_per_m", &RangeTrackerConfig::clutter_near_per_m,
+             "[1/m] up to far_m behind somebody")
+      .field("clutter_far_per_m", &RangeTrackerConfig::clutter_far_per_m, "[1/m] further")
+      .field("far_m", &RangeTrackerConfig::far_m, "[m]")
+      .field("ahead_m", &RangeTrackerConfig::ahead_m,
+             "[m] a detection so far ahead of a person is behind him yet")
+      .field("window_frames", &RangeTrackerConfig::window_frames, "that a set of people is judged by")
+      .field("newcomer_cost", &RangeTrackerConfig::newcomer_cost, "by which one more has to explain better")
+      .field("lasting_score", &RangeTrackerConfig::lasting_score, "for as many people as before")
+      .field("identity_score", &RangeTrackerConfig::identity_score, "for each who was there before")
+      .field("confirm_frames", &RangeTrackerConfig::confirm_frames, "least age")
+      .field("silent_nodes", &RangeTrackerConfig::silent_nodes, "fewer with a detection: silent")
       .field("acceleration_density_m2ps3", &RangeTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
       .field("newborn_position_std_m", &RangeTrackerConfig::newborn_position_std_m, "[m] per coordinate")
       .field("newborn_velocity_std_mps", &RangeTrackerConfig::newborn_velocity_std_mps,
              "[m/s] per coordinate")
       .field("max_speed_mps", &RangeTrackerConfig::max_speed_mps, "[m/s] of an unconfirmed track")
+      .field("candidate_detection_probability", &RangeTrackerConfig::candidate_detection_probability)
+      .field("candidate_clutter_per_m", &RangeTrackerConfig::candidate_clutter_per_m, "[1/m]")
+      .field("candidate_memory", &RangeTrackerConfig::candidate_memory, "of a score, per frame")
+      .field("drop_score", &RangeTrackerConfig::drop_score, "an unconfirmed track below dies")
+      .field("merge_distance_m", &RangeTrackerConfig::merge_distance_m, "[m]")
       .field("birth_step_m", &RangeTrackerConfig::birth_step_m, "[m] of the grid")
       .field("birth_score", &RangeTrackerConfig::birth_score, "least")
       .field("max_births", &RangeTrackerConfig::max_births, "per frame")
-      .field("birth_exclusion_m", &RangeTrackerConfig::birth_exclusion_m, "[m]")
-      .field("merge_distance_m", &RangeTrackerConfig::merge_distance_m, "[m]")
-      .field("unconfirmed_memory", &RangeTrackerConfig::unconfirmed_memory, "of a score, per frame")
-      .field("confirmed_memory", &RangeTrackerConfig::confirmed_memory, "of a score, per frame")
-      .field("confirm_score", &RangeTrackerConfig::confirm_score, "least")
-      .field("confirm_frames", &RangeTrackerConfig::confirm_frames, "least age")
-      .field("confirm_nodes", &RangeTrackerConfig::confirm_nodes, "with a detection of its own")
-      .field("confirmed_bonus", &RangeTrackerConfig::confirmed_bonus, "lead when detections are claimed")
-      .field("shared_score", &RangeTrackerConfig::shared_score, "of a node whose detection is another's")
-      .field("max_score", &RangeTrackerConfig::max_score)
-      .field("drop_score", &RangeTrackerConfig::drop_score, "an unconfirmed track below dies")
-      .field("end_score", &RangeTrackerConfig::end_score, "a confirmed track below dies")
-      .field("silent_nodes", &RangeTrackerConfig::silent_nodes, "fewer with a detection: silent");
+      .field("birth_exclusion_m", &RangeTrackerConfig::birth_exclusion_m, "[m]");
   py::class_<RangeTracker>(m, "RangeTracker", "Tracks people by the nodes' paths themselves.")
       .def(py::init<>())
       .def(

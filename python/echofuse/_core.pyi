@@ -2565,7 +2565,7 @@ class RangeTrackerConfig:
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
-    max_score: float
+    candidate_detection_probability: float
     @staticmethod
     def fields() -> tuple[str, ...]:
         """
@@ -2577,36 +2577,43 @@ class RangeTrackerConfig:
     def __init__(
         self,
         *,
-        detection_probability: float = 0.65,
-        path_std_m: float = 0.15,
-        clutter_ahead_per_m: float = 0.1,
-        clutter_body_per_m: float = 0.2,
-        clutter_echo_per_m: float = 0.14,
-        clutter_far_per_m: float = 0.15,
-        blind_path_m: float = 0.3,
-        gate_m: float = 0.4,
-        gate_max_m: float = 0.7,
-        echo_tail_m: float = 0.3,
+        detection_probability: float = 0.96,
+        far_detection_probability: float = 0.8,
+        shadowed_detection_probability: float = 0.66,
+        far_shadowed_detection_probability: float = 0.25,
+        shadow_radius_m: float = 0.3,
+        penumbra_m: float = 0.7,
+        path_scale_m: float = 0.08,
+        path_std_m: float = 0.12,
+        visible_path_m: float = 0.45,
+        nearest_path_m: float = 0.45,
+        shared_path_m: float = 0.4,
+        shared_score: float = -0.5,
+        gate_m: float = 0.5,
+        clutter_ahead_per_m: float = 0.01,
+        clutter_near_per_m: float = 0.55,
+        clutter_far_per_m: float = 0.25,
+        far_m: float = 3.5,
+        ahead_m: float = 0.3,
+        window_frames: int = 15,
+        newcomer_cost: float = 40.0,
+        lasting_score: float = 65.0,
+        identity_score: float = 5.0,
+        confirm_frames: int = 5,
+        silent_nodes: int = 3,
         acceleration_density_m2ps3: float = 0.05,
         newborn_position_std_m: float = 0.2,
         newborn_velocity_std_mps: float = 1.2,
         max_speed_mps: float = 2.5,
-        birth_step_m: float = 0.2,
-        birth_score: float = 0.0,
-        max_births: int = 10,
-        birth_exclusion_m: float = 0.8,
+        candidate_detection_probability: float = 0.85,
+        candidate_clutter_per_m: float = 0.15,
+        candidate_memory: float = 0.8,
+        drop_score: float = 2.0,
         merge_distance_m: float = 0.6,
-        unconfirmed_memory: float = 0.8,
-        confirmed_memory: float = 0.96,
-        confirm_score: float = 20.0,
-        confirm_frames: int = 7,
-        confirm_nodes: int = 3,
-        confirmed_bonus: float = 3.0,
-        shared_score: float = -0.4,
-        max_score: float = 60.0,
-        drop_score: float = 1.0,
-        end_score: float = 4.0,
-        silent_nodes: int = 3,
+        birth_step_m: float = 0.2,
+        birth_score: float = 0.5,
+        max_births: int = 10,
+        birth_exclusion_m: float = 0.6,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -2620,6 +2627,13 @@ class RangeTrackerConfig:
         """
     @acceleration_density_m2ps3.setter
     def acceleration_density_m2ps3(self, value: float) -> None: ...
+    @property
+    def ahead_m(self) -> float:
+        """
+        [m] a detection so far ahead of a person is behind him yet
+        """
+    @ahead_m.setter
+    def ahead_m(self, value: float) -> None: ...
     @property
     def birth_exclusion_m(self) -> float:
         """
@@ -2642,40 +2656,40 @@ class RangeTrackerConfig:
     @birth_step_m.setter
     def birth_step_m(self, value: float) -> None: ...
     @property
-    def blind_path_m(self) -> float:
+    def candidate_clutter_per_m(self) -> float:
         """
-        [m] behind the direct path
+        [1/m]
         """
-    @blind_path_m.setter
-    def blind_path_m(self, value: float) -> None: ...
+    @candidate_clutter_per_m.setter
+    def candidate_clutter_per_m(self, value: float) -> None: ...
+    @property
+    def candidate_memory(self) -> float:
+        """
+        of a score, per frame
+        """
+    @candidate_memory.setter
+    def candidate_memory(self, value: float) -> None: ...
     @property
     def clutter_ahead_per_m(self) -> float:
         """
-        [1/m] behind no detection
+        [1/m] behind nobody
         """
     @clutter_ahead_per_m.setter
     def clutter_ahead_per_m(self, value: float) -> None: ...
     @property
-    def clutter_body_per_m(self) -> float:
-        """
-        [1/m] to 1 m behind one
-        """
-    @clutter_body_per_m.setter
-    def clutter_body_per_m(self, value: float) -> None: ...
-    @property
-    def clutter_echo_per_m(self) -> float:
-        """
-        [1/m] to 2.5 m
-        """
-    @clutter_echo_per_m.setter
-    def clutter_echo_per_m(self, value: float) -> None: ...
-    @property
     def clutter_far_per_m(self) -> float:
         """
-        [1/m] to 8 m
+        [1/m] further
         """
     @clutter_far_per_m.setter
     def clutter_far_per_m(self, value: float) -> None: ...
+    @property
+    def clutter_near_per_m(self) -> float:
+        """
+        [1/m] up to far_m behind somebody
+        """
+    @clutter_near_per_m.setter
+    def clutter_near_per_m(self, value: float) -> None: ...
     @property
     def confirm_frames(self) -> int:
         """
@@ -2684,37 +2698,9 @@ class RangeTrackerConfig:
     @confirm_frames.setter
     def confirm_frames(self, value: int) -> None: ...
     @property
-    def confirm_nodes(self) -> int:
-        """
-        with a detection of its own
-        """
-    @confirm_nodes.setter
-    def confirm_nodes(self, value: int) -> None: ...
-    @property
-    def confirm_score(self) -> float:
-        """
-        least
-        """
-    @confirm_score.setter
-    def confirm_score(self, value: float) -> None: ...
-    @property
-    def confirmed_bonus(self) -> float:
-        """
-        lead when detections are claimed
-        """
-    @confirmed_bonus.setter
-    def confirmed_bonus(self, value: float) -> None: ...
-    @property
-    def confirmed_memory(self) -> float:
-        """
-        of a score, per frame
-        """
-    @confirmed_memory.setter
-    def confirmed_memory(self, value: float) -> None: ...
-    @property
     def detection_probability(self) -> float:
         """
-        of a node, per scan
+        in the clear
         """
     @detection_probability.setter
     def detection_probability(self, value: float) -> None: ...
@@ -2726,33 +2712,47 @@ class RangeTrackerConfig:
     @drop_score.setter
     def drop_score(self, value: float) -> None: ...
     @property
-    def echo_tail_m(self) -> float:
+    def far_detection_probability(self) -> float:
+        """
+        in the clear, more than far_m behind the first
+        """
+    @far_detection_probability.setter
+    def far_detection_probability(self, value: float) -> None: ...
+    @property
+    def far_m(self) -> float:
         """
         [m]
         """
-    @echo_tail_m.setter
-    def echo_tail_m(self, value: float) -> None: ...
+    @far_m.setter
+    def far_m(self, value: float) -> None: ...
     @property
-    def end_score(self) -> float:
+    def far_shadowed_detection_probability(self) -> float:
         """
-        a confirmed track below dies
+        with somebody in the way, far
         """
-    @end_score.setter
-    def end_score(self, value: float) -> None: ...
+    @far_shadowed_detection_probability.setter
+    def far_shadowed_detection_probability(self, value: float) -> None: ...
     @property
     def gate_m(self) -> float:
         """
-        [m] narrowest
+        [m] of path
         """
     @gate_m.setter
     def gate_m(self, value: float) -> None: ...
     @property
-    def gate_max_m(self) -> float:
+    def identity_score(self) -> float:
         """
-        [m] widest
+        for each who was there before
         """
-    @gate_max_m.setter
-    def gate_max_m(self, value: float) -> None: ...
+    @identity_score.setter
+    def identity_score(self, value: float) -> None: ...
+    @property
+    def lasting_score(self) -> float:
+        """
+        for as many people as before
+        """
+    @lasting_score.setter
+    def lasting_score(self, value: float) -> None: ...
     @property
     def max_births(self) -> int:
         """
@@ -2775,6 +2775,13 @@ class RangeTrackerConfig:
     @merge_distance_m.setter
     def merge_distance_m(self, value: float) -> None: ...
     @property
+    def nearest_path_m(self) -> float:
+        """
+        [m] behind the direct path the nearest detections are
+        """
+    @nearest_path_m.setter
+    def nearest_path_m(self, value: float) -> None: ...
+    @property
     def newborn_position_std_m(self) -> float:
         """
         [m] per coordinate
@@ -2789,16 +2796,58 @@ class RangeTrackerConfig:
     @newborn_velocity_std_mps.setter
     def newborn_velocity_std_mps(self, value: float) -> None: ...
     @property
+    def newcomer_cost(self) -> float:
+        """
+        by which one more has to explain better
+        """
+    @newcomer_cost.setter
+    def newcomer_cost(self, value: float) -> None: ...
+    @property
+    def path_scale_m(self) -> float:
+        """
+        [m] mean deviation
+        """
+    @path_scale_m.setter
+    def path_scale_m(self, value: float) -> None: ...
+    @property
     def path_std_m(self) -> float:
         """
-        [m]
+        [m] of the filters
         """
     @path_std_m.setter
     def path_std_m(self, value: float) -> None: ...
     @property
+    def penumbra_m(self) -> float:
+        """
+        [m] nearer, half in the way
+        """
+    @penumbra_m.setter
+    def penumbra_m(self, value: float) -> None: ...
+    @property
+    def shadow_radius_m(self) -> float:
+        """
+        [m] nearer to a leg, somebody is in the way
+        """
+    @shadow_radius_m.setter
+    def shadow_radius_m(self, value: float) -> None: ...
+    @property
+    def shadowed_detection_probability(self) -> float:
+        """
+        with somebody in the way
+        """
+    @shadowed_detection_probability.setter
+    def shadowed_detection_probability(self, value: float) -> None: ...
+    @property
+    def shared_path_m(self) -> float:
+        """
+        [m] two people nearer in path may be one detection
+        """
+    @shared_path_m.setter
+    def shared_path_m(self, value: float) -> None: ...
+    @property
     def shared_score(self) -> float:
         """
-        of a node whose detection is another's
+        of the one without
         """
     @shared_score.setter
     def shared_score(self, value: float) -> None: ...
@@ -2810,12 +2859,19 @@ class RangeTrackerConfig:
     @silent_nodes.setter
     def silent_nodes(self, value: int) -> None: ...
     @property
-    def unconfirmed_memory(self) -> float:
+    def visible_path_m(self) -> float:
         """
-        of a score, per frame
+        [m] behind the direct path; nobody is seen nearer
         """
-    @unconfirmed_memory.setter
-    def unconfirmed_memory(self, value: float) -> None: ...
+    @visible_path_m.setter
+    def visible_path_m(self, value: float) -> None: ...
+    @property
+    def window_frames(self) -> int:
+        """
+        that a set of people is judged by
+        """
+    @window_frames.setter
+    def window_frames(self, value: int) -> None: ...
 
 class RangeTracker:
     """
@@ -3105,5 +3161,5 @@ LIMITS: dict = {
     "max_assignment": 32,
 }
 MEASUREMENT_STAGES_BYTES: int = 33976
-SENSOR_RADAR_HUB_BYTES: int = 147848
+SENSOR_RADAR_HUB_BYTES: int = 195280
 SENSOR_RADAR_NODE_BYTES: int = 65920

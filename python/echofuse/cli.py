@@ -10,6 +10,7 @@ from echofuse import __version__
 from echofuse.errors import InputError, TargetError
 
 CASES = ("sensor-radar",)
+TARGETS = ("inprocess", "process", "cortex-m7")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -28,15 +29,20 @@ def build_parser() -> argparse.ArgumentParser:
     run.add_argument("--people", type=_people, default=1, help="how many people walk, 0 to 5 (default 1)")
     run.add_argument("--out", type=Path, help="folder of the run (default runs/CASE-SEED)")
     run.add_argument("--no-report", action="store_true", help="tables only, no pictures")
+    _add_target(run)
 
     process = commands.add_parser("process", help="track the people in a recording, ours or yours")
     process.add_argument("recording", type=Path)
     process.add_argument("--site", type=Path, help="site file (default: the one inside the recording)")
     process.add_argument("--out", type=Path, help="folder of the run (default: runs/RECORDING)")
     process.add_argument("--no-report", action="store_true", help="tables only, no pictures")
+    _add_target(process)
 
     verify = commands.add_parser("verify", help="replay a recording and prove that the same bytes come out")
     verify.add_argument("recording", type=Path)
+    verify.add_argument(
+        "--target", choices=TARGETS, default="inprocess", help="replay there (default inprocess)"
+    )
 
     import_ = commands.add_parser("import", help="turn other people's recordings into ours")
     import_.add_argument("source", type=Path, help="a logger file, or a folder with one file a node")
@@ -54,6 +60,13 @@ def build_parser() -> argparse.ArgumentParser:
     plan = commands.add_parser("plan", help="draw a site's coverage and the accuracy that it can reach")
     plan.add_argument("site", type=Path)
     plan.add_argument("--out", type=Path, help="folder for the map (default plans/SITE)")
+
+    export = commands.add_parser("export-config", help="a site as a C++ header, to be compiled into firmware")
+    export.add_argument("site", type=Path)
+    export.add_argument(
+        "--recording", type=Path, help="takes each node's scan length and sample rate from here"
+    )
+    export.add_argument("--out", type=Path, required=True, help="the header to write, site_config.hpp")
 
     bench = commands.add_parser("bench", help="the library against the NumPy reference, as ratios")
     bench.add_argument("--out", type=Path, help="folder for bench.json")
@@ -79,6 +92,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("echofuse: interrupted", file=sys.stderr)
         return 130
+
+
+def _add_target(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--target",
+        choices=TARGETS,
+        default="inprocess",
+        help="in this process (default), as host processes, or on bare Cortex-M7 images in QEMU",
+    )
+    parser.add_argument(
+        "--clock-mhz",
+        type=_positive,
+        default=216.0,
+        help="of the node's processor, for deadlines (default 216)",
+    )
+    parser.add_argument(
+        "--cycles-per-instruction",
+        type=_positive,
+        default=1.0,
+        help="what an instruction takes there: instructions are counted, cycles stated (default 1)",
+    )
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"expected a number > 0, got {text}")
+    return value
 
 
 def _natural(text: str) -> int:

@@ -15,7 +15,7 @@ class InputError(Exception):
 
 
 class TargetError(Exception):
-    """A target that cannot be had or does not do its part: one line that says which and what was waited for."""
+    """A target that cannot be had or does not do its part: one line that says which, and why."""
 
 
 def problem(file: object, key: str, expected: str, found: object = None) -> str:

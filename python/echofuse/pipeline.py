@@ -5,7 +5,7 @@ Every decision is the library's; Python only carries scans in and tables out.
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,10 @@ from echofuse.recording import NodeRecording, Recording
 from echofuse.result import RunResult
 from echofuse.run_tables import FrameOutput, NodeOutput, RunTables, Scan, Taps
 from echofuse.site import Site, SiteNode, apply_settings
+
+if TYPE_CHECKING:
+    from echofuse.emulation.deadline import Processor
+    from echofuse.emulation.emulated_radar import EmulatedRadar
 
 LAST_DEADLINE_US = 10_000_000  # after the last scan, so that the frames still open close
 
@@ -45,6 +49,21 @@ def node_config(site: Site, place: SiteNode, source: NodeRecording) -> "_core.Se
     apply_settings(config, site.settings)
     apply_settings(config, place.settings())
     return config
+
+
+def nominal_source(place: SiteNode) -> NodeRecording:
+    """Return a node that has recorded nothing yet, with the default scan length and sample rate."""
+    nominal = _core.SensorRadarNodeConfig()
+    return NodeRecording(
+        name=place.name,
+        node_id=place.id,
+        sample_rate_hz=nominal.sample_rate_hz,
+        first_sample_s=nominal.first_sample_s,
+        tx_position_m=np.array(place.tx_position_m),
+        rx_position_m=np.array(place.rx_position_m),
+        scans=np.zeros((0, nominal.n_samples), np.float32),
+        time_s=np.zeros(0),
+    )
 
 
 def hub_config(site: Site) -> "_core.SensorRadarHubConfig":
@@ -125,10 +144,34 @@ class SensorRadar:
 NO_DETECTIONS = np.dtype([("delay_s", "f4"), ("weight", "f4")])
 
 
-def process_recording(recording: Recording, site: Site, *, taps: bool = False) -> RunResult:
-    """Run a recording through its pipeline; with `taps`, keep the stages for the report's pictures."""
+def process_recording(
+    recording: Recording,
+    site: Site,
+    *,
+    taps: bool = False,
+    target: str = "inprocess",
+    processor: "Processor | None" = None,
+) -> RunResult:
+    """Run a recording through its pipeline on a target; with `taps`, keep the stages for the report.
+
+    processor: what turns a Cortex-M7's instructions into time.
+    """
     check_pipeline(recording, site)
-    radar = SensorRadar(site, recording.nodes)
+    if target == "inprocess":
+        return _process(SensorRadar(site, recording.nodes), recording, site, taps=taps)
+    from echofuse.emulation.deadline import Processor
+    from echofuse.emulation.emulated_radar import EmulatedRadar
+
+    with EmulatedRadar(site, recording.nodes, target) as radar:
+        result = _process(radar, recording, site, taps=taps)
+        result.target = target
+        result.metrics |= radar.metrics(processor or Processor())
+    return result
+
+
+def _process(
+    radar: "SensorRadar | EmulatedRadar", recording: Recording, site: Site, *, taps: bool
+) -> RunResult:
     tables = RunTables(recording, radar.hub_config)
     order = scans_in_time_order(recording.nodes)
     shown = shown_scan(recording) if taps else -1

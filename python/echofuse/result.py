@@ -41,9 +41,11 @@ class RunResult:
     baseline_tracks: NDArray[np.void]  # TRACK_DTYPE, Kalman filter with global nearest neighbour, same points
     metrics: dict[str, float]  # flat, names carry units (see `design.md` section 7)
     baseline_metrics: dict[str, float]
-    counters: dict[str, dict[str, int]]  # "hub" and each node's name -> counter -> count
-    stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
     target: str = "inprocess"  # what it ran on
+    counters: dict[str, dict[str, int]] = field(
+        default_factory=dict
+    )  # "hub" and each node's name -> counter -> count
+    stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
     emulation: "Emulation | None" = None  # faults and counters, of an emulated run
     shown_frame: int = 0  # the frame whose stages the report shows
     shown_taps: dict[str, dict[str, NDArray[Any]]] = field(

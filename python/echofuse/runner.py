@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
         return _run_seeds(options)
     site, name = _site_of_case(options.case, options.people)
     recording = _simulated(site, options.case, options.people, options.seed)
-    result = process_recording(recording, site, taps=not options.no_report)
+    result = _processed(recording, site, options)
     folder = options.out or Path("runs") / f"{name}-{options.seed}"
     return _finish(result, folder, report=not options.no_report)
 
@@ -44,7 +44,7 @@ def process(options: Namespace) -> int:
     """Track the people in a recording."""
     recording = read(options.recording)
     site = _site_of_recording(recording, options)
-    result = process_recording(recording, site, taps=not options.no_report)
+    result = _processed(recording, site, options)
     folder = options.out or Path("runs") / options.recording.stem
     return _finish(result, folder, report=not options.no_report)
 
@@ -57,7 +57,7 @@ def verify(options: Namespace) -> int:
             problem(options.recording, "outputs", "what a pipeline said (run or process writes it)")
         )
     site = _site_of_recording(recording, options)
-    result = process_recording(replace(recording, outputs=None), site)
+    result = process_recording(replace(recording, outputs=None), site, target=options.target)
     replayed = result.outputs().frame_hash
     recorded = recording.outputs.frame_hash
     same = min(len(recorded), len(replayed))
@@ -69,7 +69,8 @@ def verify(options: Namespace) -> int:
         time_s = recording.outputs.frame_time_us[differs[0]] * 1e-6
         print(f"verify: {len(differs)} of {same} frames differ, first frame {differs[0]} at {time_s:.3f} s")
         return 1
-    print(f"verify: {same} frames, all bytes the same (target {recording.outputs.target})")
+    targets = f"recorded on {recording.outputs.target}, replayed on {options.target}"
+    print(f"verify: {same} frames, all bytes the same ({targets})")
     return 0
 
 
@@ -95,6 +96,24 @@ def conform(options: Namespace) -> int:
         options.cases or ["sensor-radar"], seeds=options.seeds, recording=options.recording, out=options.out
     )
     return 0 if passed else 1
+
+
+def export_config(options: Namespace) -> int:
+    """Write a site's configurations as a C++ header."""
+    from echofuse.pipeline import hub_config, node_config, nominal_source
+    from echofuse.site.cpp_header import cpp_header
+
+    site = load_site(options.site)
+    recorded = read(options.recording).nodes if options.recording else ()
+    sources = {source.node_id: source for source in recorded}
+    configs = {
+        place.id: node_config(site, place, sources.get(place.id) or nominal_source(place))
+        for place in site.nodes
+    }
+    _make_folder(options.out.parent)
+    options.out.write_text(cpp_header(site.name, configs, hub_config(site)))
+    print(f"{len(configs)} nodes and a hub; wrote {options.out}")
+    return 0
 
 
 def plan(options: Namespace) -> int:
@@ -133,8 +152,20 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "import": import_,
     "conform": conform,
     "plan": plan,
+    "export-config": export_config,
     "bench": bench,
 }
+
+
+def _processed(recording: Recording, site: Site, options: Namespace) -> RunResult:
+    from echofuse.emulation.deadline import Processor
+
+    processor = Processor(
+        clock_hz=1e6 * options.clock_mhz, cycles_per_instruction=options.cycles_per_instruction
+    )
+    return process_recording(
+        recording, site, taps=not options.no_report, target=options.target, processor=processor
+    )
 
 
 def _site_of_case(case: str, people: int) -> tuple[Site, str]:
@@ -218,7 +249,24 @@ def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
         print(f"wrote {write_report(result, folder)}")
     else:
         print(f"wrote {folder}")
-    return 0
+    return _verdict(result)
+
+
+def _verdict(result: RunResult) -> int:
+    """Say what a target did otherwise than this process, or too late; 1 when there is anything."""
+    counted = {
+        "scans_that_differ": "scans have other detections than in this process",
+        "frames_that_differ": "frames have other tracks than in this process",
+        "deadlines_missed": "scans or frames took longer than the radar's frame period",
+    }
+    found = [
+        f"{result.metrics[name]:.0f} {what}" for name, what in counted.items() if result.metrics.get(name)
+    ]
+    for line in found:
+        print(f"{result.target}: {line}")
+    if result.target != "inprocess" and not found:
+        print(f"{result.target}: every decision as in this process, no deadline missed")
+    return 1 if found else 0
 
 
 def _write_tracks(path: Path, result: RunResult) -> None:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from board import PROFILE, STACK, TAP, TOTAL, Board
-from material import PERIOD_US, Feed, case_study, worst_case
+from material import PERIOD_US, Feed, case_study, crowd
 from static_stack import deepest, functions
 
 from echofuse.emulation.image_size import image_size
@@ -89,7 +89,7 @@ def measure(entry: dict[str, Any]) -> Figures:
         "ram_bytes": size.ram_bytes,
         "stack_bytes": deepest(found, "main", pointers).n_bytes,
     }
-    feeds = {"node": lambda: case_study()[0], "hub": lambda: case_study()[1]}
+    feeds = {"node": lambda: case_study()[0][0], "hub": lambda: case_study()[1]}
     if entry.get("feed"):
         feed = feeds[entry["feed"]]()
         plain, marked = run(image, feed), run(image, feed, marks=True)
@@ -100,7 +100,7 @@ def measure(entry: dict[str, Any]) -> Figures:
         for tap, counts in marked.stages.items():
             figures[f"instructions_of_{names[tap]}"] = round(np.mean(counts))
     if entry.get("feed") == "hub":
-        figures["instructions_worst_case"] = max(run(image, worst_case(16, 16)).totals)
+        figures["instructions_worst_case"] = max(run(image, crowd(16, 16)).totals)
     return figures
 
 

@@ -51,6 +51,10 @@ def reference_report(report: Report) -> ReferenceReport:
     )
 
 
+#: [m] or score: of it, 1e-5 are what filters in single precision differ by after some seconds.
+RANGE_MARGIN = 20.0
+
+
 class HubReference:
     """The reference's hub taken apart."""
 
@@ -141,10 +145,10 @@ class HubReference:
         return self.hub.kalman.process(measurements, dt_s)
 
     def ranges(self, rows: Array, dt_s: float) -> RangeStep:
-        """Feed the range tracker with the frame tap (n, 3); margins relative to the score to confirm."""
+        """Feed the range tracker with the frame tap (n, 3); margins as parts of RANGE_MARGIN."""
         assert self.hub.ranges is not None
         step = self.hub.ranges.process(rows[:, 0].astype(np.int64), rows[:, 1], dt_s)
-        return step._replace(margin=step.margin / self.config.ranges.confirm_score)
+        return step._replace(margin=step.margin / RANGE_MARGIN)
 
 
 def covariances(tracks: Sequence[Track | RangeTrack]) -> Array:

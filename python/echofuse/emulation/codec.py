@@ -1,4 +1,4 @@
-"""Cyphal/serial frames and the messages of a sensor radar: a second implementation, in Python from the specification.
+"""Cyphal/serial frames and the messages of a sensor radar, once more and from the specification alone.
 
 It reads what the library writes and the other way round, so the two hold each other to the wire format
 (docs/link_protocol.md). 00 | COBS(24 bytes of header | payload | CRC-32C) | 00, one frame a transfer.
@@ -254,7 +254,7 @@ _REAL32, _INTEGER32, _NATURAL8, _NATURAL16, _NATURAL64, _BIT = (
 
 
 def register_write(name: str, value: object) -> bytes:
-    """Return the request of uavcan.register.Access that sets one register. A value's type chooses the wire's."""
+    """Return the request that sets one register; the type of the value chooses the wire's."""
     if isinstance(value, bool):
         tag, data = _BIT[0], bytes([value])
     elif hasattr(type(value), "__members__"):
@@ -280,7 +280,7 @@ def register_read(name: str) -> bytes:
 
 
 def parse_register(payload: bytes) -> object:
-    """Return the first element of the value in a response of uavcan.register.Access; None when it is empty."""
+    """Return the first element of the value in a response of register.Access; None when it is empty."""
     tag, data = payload[8], payload[9:]
     for known, code in (_REAL32, _INTEGER32, _NATURAL8, _NATURAL16, _NATURAL64, _BIT):
         if tag == known:

@@ -165,9 +165,11 @@ class FirmwareRadar:
 
     def instructions(self) -> dict[str, NDArray[np.int64]]:
         """Return the ticks of each scan of all nodes ("node"), and of each frame ("hub"), in order."""
-        per_node = [[profile[PROFILE_TOTAL] for profile in node.profiles] for node in self.nodes.values()]
         return {
-            "node": np.array(sum(per_node, []), np.int64),
+            "node": np.array(
+                [profile[PROFILE_TOTAL] for node in self.nodes.values() for profile in node.profiles],
+                np.int64,
+            ),
             "hub": np.array([profile[PROFILE_TOTAL] for profile in self.hub.profiles], np.int64),
         }
 

@@ -1,7 +1,7 @@
 """Steps one emulated board: its front-end and trace through named pipes, its link through a Unix socket.
 
-Twin of `firmware_sim/lockstep.hpp`, whose comment says who sends what when. Nothing here depends on the wall clock but
-the limit after which a wait is given up, and then the error names who waited for what.
+Twin of `firmware_sim/lockstep.hpp`, whose comment says who sends what when. Nothing here depends on the wall
+clock but the limit after which a wait is given up, and then the error names who waited for what.
 """
 
 import os
@@ -36,7 +36,7 @@ PATIENCE_S = 30.0  # a step of the slowest board takes less than one second
 
 
 class BoardError(TargetError):
-    """A board that ended, broke a promise, or did not answer in time; the message says which and what was waited for."""
+    """A board that ended, broke a promise, or did not answer in time; it says what was waited for."""
 
 
 class Places(NamedTuple):
@@ -61,7 +61,11 @@ class Board:
     """One running board. `command` makes its command line from the places of its channels."""
 
     def __init__(
-        self, name: str, command: Callable[[Places], Sequence[str]], *, patience_s: float = PATIENCE_S
+        self,
+        name: str,
+        command: Callable[[Places], Sequence[str]],
+        *,
+        patience_s: float = PATIENCE_S,
     ):
         self.name = name
         self._patience_s = patience_s
@@ -74,7 +78,7 @@ class Board:
         listener.bind(str(places.link))
         listener.listen(1)
         listener.settimeout(0.05)
-        # Opened for both directions, a pipe waits for nobody; that the board has ended is seen from its process.
+        # Opened for both directions, a pipe waits for nobody; its end is seen from its process.
         self._front_end = os.open(places.front_end, os.O_RDWR)
         self._trace = os.open(places.trace, os.O_RDWR)
         self._errors = (folder / "errors").open("w+b")
@@ -205,7 +209,7 @@ class Board:
         return b"".join(parts)
 
     def _wait_readable(self, file: int, purpose: str, drain: StepOutput | None = None) -> None:
-        """Wait for a file; meanwhile the link is kept from filling up, so that the board can go on sending."""
+        """Wait for a file, and keep the link from filling up meanwhile, so that the board can go on."""
         deadline = time.monotonic() + self._patience_s
         watched = [file] if drain is None else [file, self._link.fileno()]
         while True:

@@ -1,6 +1,6 @@
 """Writes a site's configurations as a C++ header, so that firmware has them compiled in.
 
-Only what differs from the C++ structures' own defaults is written; names come from the configurations themselves.
+Only what differs from the C++ structures' own defaults is written, under the configurations' own names.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +17,7 @@ def cpp_header(site_name: str, nodes: Mapping[int, Any], hub: Any) -> str:
     nodes: `_core.SensorRadarNodeConfig` by node id; hub: `_core.SensorRadarHubConfig`.
     """
     lines = [
-        f"// The site '{' '.join(site_name.split())}', made by `echofuse export-config`. Edit the site file instead.",
+        f"// The site '{' '.join(site_name.split())}', by `echofuse export-config`: edit the site file.",
         "#pragma once",
         "",
         "#include <cstdint>",

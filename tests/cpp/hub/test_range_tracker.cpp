@@ -21,7 +21,7 @@ const Area kArea{0.0f, 0.0f, 11.5f, 6.0f};
 
 void configure(RangeTracker& tracker) {
   RangeTrackerConfig config;
-  config.detection_probability = 0.8f;  // every node hears everybody here
+  config.visible_path_m = config.nearest_path_m = -1.0f;  // every node sees everybody
   REQUIRE(tracker.configure(config, 0.18f, {kNodes.data(), kNodes.size()}, kArea) == Status::kOk);
 }
 

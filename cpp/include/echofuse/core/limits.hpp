@@ -48,7 +48,8 @@ inline constexpr std::size_t kMaxAssignment =
 // The link.
 inline constexpr std::size_t kMaxLinkSessions =
     64;  ///< pairs of sender and port whose last transfer is remembered: 16 nodes of 4 subjects
-inline constexpr std::size_t kMaxHealthValues = 48;  ///< counters in one NodeHealth: a hub has 28, and its link 8
+inline constexpr std::size_t kMaxHealthValues =
+    48;  ///< counters in one NodeHealth: a hub has 28, and its link 8
 inline constexpr std::size_t kMaxPayloadBytes =
     1024;  ///< [byte] of any message but RawScan: Tracks takes 24 times 35 and 12
 

@@ -40,7 +40,8 @@ echofuse_Track_1_0 to_wire(const Track& track) {
   echofuse_Track_1_0 wire{};
   wire.id = static_cast<std::uint32_t>(track.id);
   wire.state = static_cast<std::uint8_t>(track.state);
-  wire.frames_since_update = static_cast<std::uint16_t>(std::clamp<std::int32_t>(track.frames_since_update, 0, 65535));
+  wire.frames_since_update =
+      static_cast<std::uint16_t>(std::clamp<std::int32_t>(track.frames_since_update, 0, 65535));
   wire.position[0] = track.x_m;
   wire.position[1] = track.y_m;
   wire.velocity[0] = track.vx_mps;

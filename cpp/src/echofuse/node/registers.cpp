@@ -1,6 +1,5 @@
 #include "echofuse/node/registers.hpp"
 
-#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -11,7 +10,7 @@ namespace {
 
 #define FIELD(member) ECHOFUSE_REGISTER(SensorRadarNodeConfig, member)
 
-constexpr std::array kFields{
+constexpr link::RegisterField kFields[] = {
     FIELD(n_samples),
     FIELD(sample_rate_hz),
     FIELD(first_sample_s),

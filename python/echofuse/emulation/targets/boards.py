@@ -1,4 +1,4 @@
-"""Where firmware runs: as a host process, or on a bare Cortex-M7 in QEMU. Each gives a command that starts a board."""
+"""Where firmware runs: as a host process, or on a bare Cortex-M7 in QEMU."""
 
 import os
 import shutil
@@ -13,7 +13,7 @@ _SUFFIX = {"process": "", "cortex-m7": ".elf"}
 
 
 def firmware_image(target: str, role: str) -> Path:
-    """Return the image of `role` ("node", "hub"): of the folder ECHOFUSE_FIRMWARE names, or of the installed package."""
+    """Return the image of a role, "node" or "hub": in the folder ECHOFUSE_FIRMWARE, or in the package."""
     named = os.environ.get("ECHOFUSE_FIRMWARE")
     folder = Path(named) if named else Path(__file__).parents[2] / "firmware"
     image = folder / target / f"sensor_radar_{role}{_SUFFIX[target]}"

@@ -26,12 +26,8 @@ from echofuse.reference.hub.measure.point_clusters import PointClusterConfig, Po
 from echofuse.reference.hub.track.kalman_tracker import KalmanTracker
 from echofuse.reference.hub.track.phd_filter import PhdConfig
 from echofuse.reference.hub.track.phd_tracker import PhdStep, PhdTracker
-from echofuse.reference.hub.track.range_tracker import (
-    RangeStep,
-    RangeTrack,
-    RangeTracker,
-    RangeTrackerConfig,
-)
+from echofuse.reference.hub.track.range_config import RangeTrackerConfig
+from echofuse.reference.hub.track.range_tracker import RangeStep, RangeTrack, RangeTracker
 from echofuse.reference.hub.track.track_manager import UNCONFIRMED, Step, Track, TrackManagerConfig
 
 Array = NDArray[np.float64]
