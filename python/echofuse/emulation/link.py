@@ -38,8 +38,12 @@ class Link:
         deliver: Deliver,
     ) -> None:
         self._node, self._faults, self._log, self._clock, self._deliver = node, faults, log, clock, deliver
-        self._chance = {name: stream(seed, f"link.{name}", node) for name in _CHANCES}
-        self._bits = stream(seed, "link.bit_error_rate", node)
+        # What else a machine sends has streams of its own: the same reports are lost on every target.
+        self._chance = {
+            (name, report): stream(seed, f"link.{name}{'' if report else '.other'}", node)
+            for name in (*_CHANCES, "bit_error_rate")
+            for report in (True, False)
+        }
         self._free_us = 0  # when the line is free again
         self._held: list[tuple[bytes, bool, bool]] = []  # frames that the next one overtakes
         for name in (*_CHANCES, "bit_error_rate"):
@@ -52,8 +56,8 @@ class Link:
     def send(self, frame: bytes, *, report: bool) -> None:
         """Carry a frame, with its delimiters. report: whether the hub waits for it."""
         faults, now_us = self._faults, self._clock.now_us
-        happens = {name: self._chance[name].random() < getattr(faults, name) for name in _CHANCES}
-        flips = self._bits.random(8 * len(frame)) < faults.bit_error_rate
+        happens = {name: self._chance[name, report].random() < getattr(faults, name) for name in _CHANCES}
+        flips = self._chance["bit_error_rate", report].random(8 * len(frame)) < faults.bit_error_rate
         if happens["loss"]:
             self._write("link.loss", Effect.MISSING if report else Effect.NOTHING)
             return

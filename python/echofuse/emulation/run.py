@@ -194,6 +194,12 @@ class _Run:
         return next(node for node in self._nodes if node.name == name)
 
     def _switch_off(self, station: Station, fault: Fault) -> None:
+        if station is self._hub and station.machine is not None:
+            # It may have to be stepped to tell its counters, and closes the frame that is open: on every target.
+            at_us = self._clock.now_us + LAST_DEADLINE_US
+            self._monitor.step(at_us, b"")
+            station.machine.step(at_us)
+            station.switch_off(at_us)
         station.switch_off(self._clock.now_us)
         self._log.add(fault.key, fault.node, self._clock.now_us, Effect.NOTHING, "off")
 

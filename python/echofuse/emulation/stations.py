@@ -33,10 +33,14 @@ class Station:
         self.machine = self._open_machine()
         self._counted["starts"] += 1
 
+    def machine_us(self, now_us: int) -> int:
+        """Return what the machine's clock shows at a virtual time [us]."""
+        return now_us
+
     def switch_off(self, now_us: int) -> None:
         """Take what the machine has counted, and end it."""
         if self.machine is not None:
-            self._counted.update(self.machine.counters(now_us))
+            self._counted.update(self.machine.counters(self.machine_us(now_us)))
             self.machine.close()
         self.machine = None
 
@@ -77,6 +81,10 @@ class NodeStation(Station):
         self._radar, self._faults, self._log, self._begin_us = radar, faults, log, begin_us
         self._garbage = stream(seed, "fault.garbage", name)
 
+    def machine_us(self, now_us: int) -> int:
+        """Return what the node's clock shows at a virtual time [us]."""
+        return clock_us(self._radar, now_us)
+
     def scan(self, event: RadarEvent, scan: ScanInput, *, taps: bool) -> StepOutput | None:
         """Give the node a scan, and its link what it says; None when nothing reaches the node."""
         if self.machine is None:
@@ -89,7 +97,7 @@ class NodeStation(Station):
             return None
         if event.again:
             self._log.add("radar.doubled", self.name, event.ready_us, Effect.EXTRA)
-        output = self.machine.step(clock_us(self._radar, event.ready_us), b"", scan, taps=taps)
+        output = self.machine.step(self.machine_us(event.ready_us), b"", scan, taps=taps)
         self.keep_profile(output)
         for frame in frames_in(output.link_out):
             self._send(event.ready_us, frame)

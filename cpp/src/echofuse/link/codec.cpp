@@ -19,7 +19,10 @@ constexpr std::size_t kScanHeaderBytes = kTimeBytes + 2;
 constexpr std::uint64_t kTimeMask = (std::uint64_t{1} << 56) - 1;
 
 /// A generated function's answer: the length, or 0 for its errors.
-std::size_t length_or_nothing(std::int8_t result, std::size_t length) { return result >= 0 ? length : 0; }
+/// The length by reference: the call that sets it is an argument too, and may be evaluated after a copy was made.
+std::size_t length_or_nothing(std::int8_t result, const std::size_t& length) {
+  return result >= 0 ? length : 0;
+}
 
 std::uint16_t to_uint16(float value) { return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 65535.0f)); }
 

@@ -19,8 +19,14 @@ def _inprocess(name: str, site: Site, sources: Sequence[NodeRecording]) -> Targe
     return InProcessTarget(site, sources)
 
 
+def _firmware(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target:
+    from echofuse.emulation.targets.firmware import FirmwareTarget
+
+    return FirmwareTarget(name, site, sources)
+
+
 #: By name, or by what a name begins with ("tcp:").
-TARGETS: dict[str, Opener] = {"inprocess": _inprocess}
+TARGETS: dict[str, Opener] = {"inprocess": _inprocess} | {name: _firmware for name in FIRMWARE_TARGETS}
 
 
 def open_target(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target:
