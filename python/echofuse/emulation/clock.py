@@ -1,7 +1,7 @@
 """The virtual clock: the only time of an emulation, and what is to happen when.
 
-Time is an integer number of microseconds. Events of the same time happen in the order in which they were put in,
-so a run depends on nothing but its inputs.
+Time is an integer number of microseconds. Events of the same time happen in the order in which they were put
+in, so a run depends on nothing but its inputs.
 """
 
 import heapq

@@ -1,4 +1,4 @@
-"""What the command line does with faults: reads the scenario, runs it, and tells what was injected and counted."""
+"""What the command line does with faults: reads the scenario, runs it, tells what was counted."""
 
 from pathlib import Path
 

@@ -24,7 +24,7 @@ def frames_in(data: bytes) -> list[bytes]:
 class Link:
     """A link; `deliver` is called at the virtual time at which bytes arrive.
 
-    Of a frame that is lost nothing else happens; a damaged one is not doubled; a late one is not overtaken on top.
+    Nothing else happens to a lost frame; a damaged one is not doubled, a late one not overtaken on top.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Link:
         self._release(self._clock.now_us)
 
     def _release(self, time_us: int) -> None:
-        for copy, intact, report in self._held:
+        for copy, intact, _ in self._held:
             self._arrive(time_us, copy, intact)
         if self._held:
             self._write("link.reorder", Effect.DELAYED if self._held[0][2] else Effect.NOTHING)

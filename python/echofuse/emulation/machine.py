@@ -35,7 +35,7 @@ class Machine(Protocol):
     def step(
         self, now_us: int, link_in: bytes = b"", scan: ScanInput | None = None, *, taps: bool = False
     ) -> StepOutput:
-        """Let it work at one moment of its own clock [us], with what has arrived for it. A hub gets no scans."""
+        """Let it work at one moment of its own clock [us], with what has arrived; a hub gets no scans."""
         ...
 
     def counters(self, now_us: int) -> dict[str, int]:
@@ -56,7 +56,7 @@ class Target(Protocol):
     name: str  # as the command line has it
 
     def open_node(self, index: int) -> Machine:
-        """Start the node of the recording's index-th radar, configured, and with its empty room if it has one."""
+        """Start the node of the recording's index-th radar, configured and with its empty room."""
         ...
 
     def open_hub(self) -> Machine:

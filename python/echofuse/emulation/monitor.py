@@ -1,7 +1,7 @@
 """Listens beside the hub, and says what it must have counted.
 
-Independent of the machines: frames are read by the Python codec and reports lined up by the NumPy reference, at the
-same virtual times. Whatever the target, its hub's counters have to be these.
+Independent of the machines: frames are read by the Python codec and reports lined up by the NumPy reference,
+at the same virtual times. Whatever the target, its hub's counters have to be these.
 """
 
 from collections import Counter
@@ -45,6 +45,7 @@ class HubMonitor:
     def expected(self) -> dict[str, int]:
         """Return the counters by the names of NodeHealth, of all lives together."""
         now = Counter(asdict(self._assembler.counters))
+        now["clock_faults"] = self._clock_faults
         now.update({f"link_{name}": count for name, count in self._receiver.counters().items()})
         now.update(self._earlier)
         return dict(now)
@@ -52,7 +53,10 @@ class HubMonitor:
     def _begin(self) -> None:
         self._receiver = Receiver()
         self._assembler = FrameAssembler(self._config, self._node_ids)
+        self._frame_us: int | None = None
+        self._clock_faults = 0
 
     def _poll(self, now_us: int) -> None:
-        while self._assembler.poll(now_us) is not None:
-            pass
+        while (closed := self._assembler.poll(now_us)) is not None:
+            self._clock_faults += self._frame_us is not None and closed.time_us <= self._frame_us
+            self._frame_us = closed.time_us

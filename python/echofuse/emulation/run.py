@@ -1,4 +1,4 @@
-"""Runs one recording through emulated radars, links and machines: a pure function of (scenario, seed, target)."""
+"""Runs a recording through emulated radars, links and machines: a function of (scenario, seed, target)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -195,7 +195,8 @@ class _Run:
 
     def _switch_off(self, station: Station, fault: Fault) -> None:
         if station is self._hub and station.machine is not None:
-            # It may have to be stepped to tell its counters, and closes the frame that is open: on every target.
+            # It may have to be stepped to tell its counters, and then closes the frame that is open: so it does
+            # on all targets. What it says there, nobody hears.
             at_us = self._clock.now_us + LAST_DEADLINE_US
             self._monitor.step(at_us, b"")
             station.machine.step(at_us)

@@ -131,7 +131,7 @@ def _with_overrides(
 
 def _ranged(table: Table, ranges: Mapping[str, _Range]) -> dict[str, Any]:
     """Return the values that a table sets."""
-    found = {}
+    found: dict[str, Any] = {}
     for key, (kind, low, high, unit) in ranges.items():
         if kind is int:
             found[key] = table.integer(key, int(low), int(high))

@@ -1,4 +1,4 @@
-"""A machine with its life in an emulation: opened, switched off, opened again; what it counted in all its lives."""
+"""A machine in an emulation: switched on, off and on again, and what it counted in all its lives."""
 
 from collections import Counter
 from collections.abc import Callable

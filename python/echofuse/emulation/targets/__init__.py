@@ -26,7 +26,7 @@ def _firmware(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target
 
 
 #: By name, or by what a name begins with ("tcp:").
-TARGETS: dict[str, Opener] = {"inprocess": _inprocess} | {name: _firmware for name in FIRMWARE_TARGETS}
+TARGETS: dict[str, Opener] = {"inprocess": _inprocess, **dict.fromkeys(FIRMWARE_TARGETS, _firmware)}
 
 
 def open_target(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target:

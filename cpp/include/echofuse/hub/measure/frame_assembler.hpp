@@ -42,9 +42,9 @@ struct FrameAssemblerCounters {
 /// Lines up the nodes' reports: one frame holds each node's scan of the same instant.
 ///
 /// A node's scan counter tells its frames apart; its offset against the hub's counter is learnt from the
-/// node's first report, which belongs to the frame then open, or to the next one if half of the deadline has passed.
-/// A frame closes when all live nodes are in, when its deadline has passed, or when a report came that is two frames
-/// ahead. Time is an argument.
+/// node's first report, which belongs to the frame then open, or to the next one if half of the usual time between
+/// frames has passed. A frame closes when all live nodes are in, when its deadline has passed, or when a report came
+/// that is two frames ahead. Time is an argument.
 ///
 /// A report is out of step when its frame is closed, far ahead, or cannot be due: less than half of the usual time
 /// between frames has passed (so a node that counts one scan too many does not open frames before the others).

@@ -106,8 +106,8 @@ std::int32_t FrameAssembler::ahead_of(const NodeState& node, std::uint32_t frame
 void FrameAssembler::line_up(NodeState& node, std::size_t node_index, std::uint32_t frame,
                              std::int64_t now_us) {
   const OpenFrame& head = slot(0);
-  const bool is_next = head.open && (head.reports[node_index].count >= 0 ||
-                                     2 * (now_us - head.opened_us) > config_.deadline_us);
+  const bool is_past = interval_us_ > 0 && 2 * (now_us - head.opened_us) > interval_us_;
+  const bool is_next = head.open && (head.reports[node_index].count >= 0 || is_past);
   node.offset = number_ + (is_next ? 1U : 0U) - frame;
   node.aligned = true;
   node.out_of_step = 0;

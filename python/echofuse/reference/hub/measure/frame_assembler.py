@@ -134,7 +134,7 @@ class FrameAssembler:
         """The offset that makes a report one of the frame that is open, or of the next one."""
         oldest = self.open.get(self.number)
         is_next = oldest is not None and (
-            index in oldest.reports or 2 * (now_us - oldest.opened_us) > self.config.deadline_us
+            index in oldest.reports or 0 < self.interval_us < 2 * (now_us - oldest.opened_us)
         )
         return self.number + int(is_next) - frame
 
