@@ -165,9 +165,10 @@ Status decode(Span<const std::uint8_t> payload, Heartbeat& heartbeat) {
   uavcan_node_Heartbeat_1_0 wire{};
   std::size_t size = payload.size();
   if (uavcan_node_Heartbeat_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (wire.mode.value > static_cast<std::uint8_t>(Mode::kSoftwareUpdate)) return Status::kInvalidInput;
   heartbeat.uptime_s = wire.uptime;
-  heartbeat.health = static_cast<Health>(wire.health.value & 3U);
-  heartbeat.mode = static_cast<Mode>(wire.mode.value & 3U);
+  heartbeat.health = static_cast<Health>(wire.health.value);
+  heartbeat.mode = static_cast<Mode>(wire.mode.value);
   heartbeat.vendor_status = wire.vendor_specific_status_code;
   return Status::kOk;
 }
