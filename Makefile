@@ -58,7 +58,7 @@ test-cpp: .venv/.setup-test
 	cmake --build --preset host
 	ctest --preset host
 
-test: build test-cpp firmware
+test: build test-cpp firmware fuzz-short
 	$(PYTHON) -m pytest -q -n auto
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize
@@ -68,9 +68,10 @@ test-fast: build test-cpp
 	$(PYTHON) -m pytest -q -n auto -m 'not slow'
 
 # Inputs that are worth keeping go to build/fuzz/corpus; what finds something is left in build/fuzz/findings.
-FUZZERS := frames requests detections tracks node_health heartbeat synchronization raw_scan
+FUZZERS := frames detections tracks node_health heartbeat synchronization raw_scan
 fuzz: .venv/.setup-fuzz
 	tools/fuzz -runs=10000000 $(FUZZERS)
+	tools/fuzz -runs=1000000 requests  # each of which searches 250 names
 
 fuzz-short: .venv/.setup-fuzz
 	tools/fuzz -max_total_time=30 frames requests messages
