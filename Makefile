@@ -5,6 +5,7 @@
 #   budgets    measures the images, prints README's table, and makes its figures the budgets of tests/firmware
 #   test       everything: C++, Python, then C++ again under the sanitizers
 #   test-fast  C++ and the quick part of Python, under three minutes
+#   fuzz       10 million inputs into each decoder of the link (a quarter of an hour); fuzz-short: half a minute each
 #   bench      C++ against the NumPy reference
 #   lint       what pre-commit checks
 #   stubs      python/echofuse/_core.pyi anew from the built core
@@ -21,7 +22,7 @@ SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings pyt
              \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
 CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
 
-.PHONY: demo build firmware budgets test test-fast test-cpp bench lint stubs clean distclean
+.PHONY: demo build firmware budgets test test-fast test-cpp fuzz fuzz-short bench lint stubs clean distclean
 
 demo: build
 	.venv/bin/echofuse run sensor-radar --out demo
@@ -38,7 +39,7 @@ build/.installed: $(SOURCES) | .venv/.setup-run
 	tools/setup $*
 
 # What a part adds to the environment is put into the one that `run` has made.
-.venv/.setup-test .venv/.setup-firmware .venv/.setup-lint: .venv/.setup-run
+.venv/.setup-test .venv/.setup-firmware .venv/.setup-fuzz .venv/.setup-lint: .venv/.setup-run
 
 # The images go beside the package, where `--target cortex-m7` looks for them.
 PACKAGE = $(shell $(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("platlib"))')/echofuse
@@ -57,7 +58,7 @@ test-cpp: .venv/.setup-test
 	cmake --build --preset host
 	ctest --preset host
 
-test: build test-cpp firmware
+test: build test-cpp firmware fuzz-short
 	$(PYTHON) -m pytest -q -n auto
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize
@@ -65,6 +66,15 @@ test: build test-cpp firmware
 
 test-fast: build test-cpp
 	$(PYTHON) -m pytest -q -n auto -m 'not slow'
+
+# Inputs that are worth keeping go to build/fuzz/corpus; what finds something is left in build/fuzz/findings.
+FUZZERS := frames detections tracks node_health heartbeat synchronization raw_scan
+fuzz: .venv/.setup-fuzz
+	tools/fuzz -runs=10000000 $(FUZZERS)
+	tools/fuzz -runs=1000000 requests  # each of which searches 250 names
+
+fuzz-short: .venv/.setup-fuzz
+	tools/fuzz -max_total_time=30 frames requests messages
 
 bench: build
 	.venv/bin/echofuse bench

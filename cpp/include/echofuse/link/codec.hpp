@@ -10,7 +10,8 @@
 #include "echofuse/link/messages.hpp"
 
 /// Payloads of the messages in cpp/dsdl, by the code generated from there. encode(): the payload's length in `out`,
-/// 0 when it has no room. decode(): kInvalidInput for a payload that is none of this type; the message is then empty.
+/// 0 when it has no room. decode(): kInvalidInput for a payload that is none of this type, or of our own messages is
+/// cut short; the message is then empty.
 namespace echofuse::link {
 
 /// Node and frame travel in the header: as its source, and as its transfer id (Detections::frame).

@@ -24,6 +24,13 @@ std::size_t length_or_nothing(std::int8_t result, const std::size_t& length) {
   return result >= 0 ? length : 0;
 }
 
+/// Whether a payload holds `n_items` behind its first bytes. Cyphal takes what is missing for zeros, which no sender of
+/// these messages means: a broken bit can cut a frame so that an empty payload remains, whose CRC is zero.
+bool holds(Span<const std::uint8_t> payload, std::size_t first_bytes, std::size_t n_items,
+           std::size_t item_bytes) {
+  return payload.size() >= first_bytes + n_items * item_bytes;
+}
+
 std::uint16_t to_uint16(float value) { return static_cast<std::uint16_t>(std::clamp(value, 0.0f, 65535.0f)); }
 
 std::uint64_t to_time(std::int64_t time_us) { return static_cast<std::uint64_t>(time_us) & kTimeMask; }
@@ -93,6 +100,7 @@ Status decode(const TransferHeader& header, Span<const std::uint8_t> payload, De
   echofuse_Detections_1_0 wire{};
   std::size_t size = payload.size();
   if (echofuse_Detections_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (!holds(payload, kTimeBytes + 1, wire.detections.count, 6)) return Status::kInvalidInput;
   report.node_id = header.source;
   report.frame = static_cast<std::uint32_t>(header.transfer_id);
   report.time_us = from_time(wire.time_us);
@@ -118,6 +126,7 @@ Status decode(Span<const std::uint8_t> payload, Tracks& tracks) {
   echofuse_Tracks_1_0 wire{};
   std::size_t size = payload.size();
   if (echofuse_Tracks_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (!holds(payload, kTimeBytes + 5, wire.tracks.count, 35)) return Status::kInvalidInput;
   tracks.time_us = from_time(wire.time_us);
   tracks.frame = wire.frame;
   for (std::size_t i = 0; i < wire.tracks.count; ++i) {
@@ -144,6 +153,7 @@ Status decode(Span<const std::uint8_t> payload, NodeHealth& health) {
   echofuse_NodeHealth_1_0 wire{};
   std::size_t size = payload.size();
   if (echofuse_NodeHealth_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (!holds(payload, 2, wire.values.count, 4)) return Status::kInvalidInput;
   if (wire.kind > static_cast<std::uint8_t>(MachineKind::kSensorRadarHub)) return Status::kInvalidInput;
   health.kind = static_cast<MachineKind>(wire.kind);
   for (std::size_t i = 0; i < wire.values.count; ++i)
@@ -165,9 +175,10 @@ Status decode(Span<const std::uint8_t> payload, Heartbeat& heartbeat) {
   uavcan_node_Heartbeat_1_0 wire{};
   std::size_t size = payload.size();
   if (uavcan_node_Heartbeat_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (wire.mode.value > static_cast<std::uint8_t>(Mode::kSoftwareUpdate)) return Status::kInvalidInput;
   heartbeat.uptime_s = wire.uptime;
-  heartbeat.health = static_cast<Health>(wire.health.value & 3U);
-  heartbeat.mode = static_cast<Mode>(wire.mode.value & 3U);
+  heartbeat.health = static_cast<Health>(wire.health.value);
+  heartbeat.mode = static_cast<Mode>(wire.mode.value);
   heartbeat.vendor_status = wire.vendor_specific_status_code;
   return Status::kOk;
 }
