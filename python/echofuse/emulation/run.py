@@ -195,7 +195,7 @@ class _Run:
 
     def _switch_off(self, station: Station, fault: Fault) -> None:
         if station is self._hub and station.machine is not None:
-            # It may have to be stepped to tell its counters, and then closes the frame that is open: so it does
+            # It may have to be stepped to tell its counters, and then closes an open frame: as it does
             # on all targets. What it says there, nobody hears.
             at_us = self._clock.now_us + LAST_DEADLINE_US
             self._monitor.step(at_us, b"")
