@@ -141,3 +141,16 @@ def test_every_report_that_is_missing_is_counted(events):  # type: ignore[no-unt
     counters = stage.counters
     assert counters.accepted + counters.lost + counters.absent == len(NODES) * (number + 1)
     assert counters.frames <= number + 1
+
+
+def test_a_scan_that_a_node_missed_costs_three_of_its_reports():  # type: ignore[no-untyped-def]
+    """It is one behind from then on: missing once, late twice, and lined up by the third."""
+    stage, reported = assembler(), []
+    for k in range(20):
+        for node in range(4):
+            if node != 1 or k != 10:
+                stage.receive(node, k - int(node == 1 and k > 10), DELAY, WEIGHT, k * 100_000)
+        while (closed := stage.poll(k * 100_000 + 90_000)[1]) is not None:
+            reported.append(closed[2])
+    assert reported == [4] * 10 + [3] * 3 + [4] * 7
+    assert (stage.counters.lost, stage.counters.late, stage.counters.resynchronised) == (3, 2, 1)
