@@ -2,6 +2,7 @@
 #include "echofuse/core/limits.hpp"
 #include "echofuse/core/random.hpp"
 #include "echofuse/core/status.hpp"
+#include "taps.hpp"
 
 namespace echofuse::bindings {
 namespace {
@@ -58,10 +59,19 @@ void bind_random(py::module_& m) {
           py::arg("n"), "The next n normals, (n,).");
 }
 
+/// TAPS: a tap's number on a board's trace -> its name and columns (0: one-dimensional).
+void bind_taps(py::module_& m) {
+  py::dict taps;
+  for (const TapLayout& layout : kTapLayouts)
+    taps[py::int_(static_cast<int>(layout.tap))] = py::make_tuple(layout.name, layout.columns);
+  m.attr("TAPS") = taps;
+}
+
 }  // namespace
 
 void bind_core(py::module_& m) {
   bind_status(m);
+  bind_taps(m);
   bind_limits(m);
   bind_random(m);
 }

@@ -191,7 +191,9 @@ void bind_frame_assembler(py::module_& m) {
       .def_readonly("unknown_node", &FrameAssemblerCounters::unknown_node)
       .def_readonly("lost", &FrameAssemblerCounters::lost)
       .def_readonly("resynchronised", &FrameAssemblerCounters::resynchronised)
-      .def_readonly("frames", &FrameAssemblerCounters::frames);
+      .def_readonly("frames", &FrameAssemblerCounters::frames)
+      .def_readonly("absent", &FrameAssemblerCounters::absent)
+      .def_readonly("slow", &FrameAssemblerCounters::slow);
   py::class_<FrameAssembler>(m, "FrameAssembler")
       .def(py::init<>())
       .def(

@@ -30,6 +30,8 @@ py::dict counters(const SensorRadarHub& self) {
   by_name["lost"] = c.reports.lost;
   by_name["resynchronised"] = c.reports.resynchronised;
   by_name["frames"] = c.reports.frames;
+  by_name["absent"] = c.reports.absent;
+  by_name["slow"] = c.reports.slow;
   by_name["tuples"] = c.selection.tuples;
   by_name["dropped_tuples"] = c.selection.dropped_tuples;
   by_name["dropped_detections"] = c.selection.dropped_detections;

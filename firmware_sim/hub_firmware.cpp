@@ -97,15 +97,26 @@ class HubFirmware {
     const hub::SensorRadarHubCounters c = hub_.counters();
     link::NodeHealth health;
     health.kind = link::MachineKind::kSensorRadarHub;
-    for (const std::uint32_t value :
-         {c.reports.accepted, c.reports.late, c.reports.early, c.reports.doubled, c.reports.malformed,
-          c.reports.unknown_node, c.reports.lost, c.reports.resynchronised, c.reports.frames,
-          static_cast<std::uint32_t>(c.selection.tuples),
-          static_cast<std::uint32_t>(c.selection.dropped_tuples),
-          static_cast<std::uint32_t>(c.selection.dropped_detections),
-          static_cast<std::uint32_t>(c.selection.dropped_measurements),
-          static_cast<std::uint32_t>(c.dropped_points), c.dropped_births, c.clock_faults, undecodable_,
-          profiler_.most_ticks()})
+    for (const std::uint32_t value : {c.reports.accepted,
+                                      c.reports.late,
+                                      c.reports.early,
+                                      c.reports.doubled,
+                                      c.reports.malformed,
+                                      c.reports.unknown_node,
+                                      c.reports.lost,
+                                      c.reports.resynchronised,
+                                      c.reports.frames,
+                                      c.reports.absent,
+                                      c.reports.slow,
+                                      static_cast<std::uint32_t>(c.selection.tuples),
+                                      static_cast<std::uint32_t>(c.selection.dropped_tuples),
+                                      static_cast<std::uint32_t>(c.selection.dropped_detections),
+                                      static_cast<std::uint32_t>(c.selection.dropped_measurements),
+                                      static_cast<std::uint32_t>(c.dropped_points),
+                                      c.dropped_births,
+                                      c.clock_faults,
+                                      undecodable_,
+                                      profiler_.most_ticks()})
       add(health, value);
     add_link(health, endpoint_);
     endpoint_.publish(endpoint_.ports().node_health, health_messages_++,

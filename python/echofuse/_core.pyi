@@ -77,6 +77,7 @@ __all__: list[str] = [
     "SensorRadarNode",
     "SensorRadarNodeConfig",
     "Status",
+    "TAPS",
     "TimeZero",
     "TrackManager",
     "TrackManagerConfig",
@@ -1720,7 +1721,7 @@ class FrameAssemblerConfig:
         *,
         deadline_us: int = 80000,
         dead_after_frames: int = 10,
-        resync_after_reports: int = 10,
+        resync_after_reports: int = 3,
         max_delay_s: float = 1e-06,
     ) -> None: ...
     def __repr__(self) -> str: ...
@@ -1745,6 +1746,8 @@ class FrameAssemblerConfig:
 
 class FrameAssemblerCounters:
     @property
+    def absent(self) -> int: ...
+    @property
     def accepted(self) -> int: ...
     @property
     def doubled(self) -> int: ...
@@ -1760,6 +1763,8 @@ class FrameAssemblerCounters:
     def malformed(self) -> int: ...
     @property
     def resynchronised(self) -> int: ...
+    @property
+    def slow(self) -> int: ...
     @property
     def unknown_node(self) -> int: ...
 
@@ -3283,6 +3288,26 @@ LIMITS: dict = {
     "max_newborn_particles": 1024,
     "max_assignment": 32,
 }
-MEASUREMENT_STAGES_BYTES: int = 33976
-SENSOR_RADAR_HUB_BYTES: int = 200432
+MEASUREMENT_STAGES_BYTES: int = 34016
+SENSOR_RADAR_HUB_BYTES: int = 200472
 SENSOR_RADAR_NODE_BYTES: int = 65928
+TAPS: dict = {
+    0: ("scan", 0),
+    1: ("envelope", 0),
+    2: ("direct_path", 0),
+    3: ("alignment", 0),
+    4: ("aligned", 0),
+    5: ("residual", 0),
+    6: ("threshold", 0),
+    7: ("decisions", 0),
+    8: ("range_clusters", 4),
+    9: ("detections", 2),
+    32: ("frame", 3),
+    33: ("selected", 5),
+    34: ("points", 4),
+    35: ("predicted", 5),
+    36: ("updated", 5),
+    37: ("resampled", 5),
+    38: ("peaks", 5),
+    39: ("tracks", 7),
+}

@@ -29,6 +29,9 @@ def build_parser() -> argparse.ArgumentParser:
     run.add_argument("--people", type=_people, default=1, help="how many people walk, 0 to 5 (default 1)")
     run.add_argument("--out", type=Path, help="folder of the run (default runs/CASE-SEED)")
     run.add_argument("--no-report", action="store_true", help="tables only, no pictures")
+    run.add_argument(
+        "--faults", metavar="NAME|FILE", help="a scenario of faults, such as lost or all, or FILE.toml"
+    )
     _add_target(run)
 
     process = commands.add_parser("process", help="track the people in a recording, ours or yours")

@@ -4,8 +4,7 @@ Every decision is the library's; Python only carries scans in and tables out.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +14,9 @@ from echofuse import _core
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
 from echofuse.metrics import measure
-from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, NodeRecording, Recording
-from echofuse.result import POINT_DTYPE, NodeStack, RunResult
+from echofuse.recording import NodeRecording, Recording
+from echofuse.result import RunResult
+from echofuse.run_tables import FrameOutput, NodeOutput, RunTables, Scan, Taps
 from echofuse.site import Site, SiteNode, apply_settings
 
 if TYPE_CHECKING:
@@ -24,34 +24,6 @@ if TYPE_CHECKING:
     from echofuse.emulation.emulated_radar import EmulatedRadar
 
 LAST_DEADLINE_US = 10_000_000  # after the last scan, so that the frames still open close
-
-Taps = dict[str, NDArray[np.float32]]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scan:
-    """One scan on its way to its node."""
-
-    time_us: int
-    node: int  # index into the recording's nodes
-    index: int  # index into that node's scans
-
-
-@dataclass(frozen=True, kw_only=True)
-class NodeOutput:
-    """What one node said about one scan."""
-
-    detections: NDArray[np.void]  # delay_s, weight
-    taps: Taps = field(default_factory=dict)  # when asked for
-
-
-@dataclass(frozen=True, kw_only=True)
-class FrameOutput:
-    """What the hub said about one frame."""
-
-    time_us: int
-    points: NDArray[np.float32]  # (n, 4) x [m], y [m], members, weight
-    tracks: NDArray[np.void]
 
 
 def scans_in_time_order(nodes: Sequence[NodeRecording]) -> list[Scan]:
@@ -114,23 +86,16 @@ class SensorRadar:
 
     def __init__(self, site: Site, sources: Sequence[NodeRecording]) -> None:
         self._sources = tuple(sources)
-        places = {place.id: place for place in site.nodes}
-        if not any(source.node_id in places for source in sources):
-            found = ", ".join(str(source.node_id) for source in sources)
-            known = ", ".join(map(str, places))
-            raise InputError(problem(site.name, "node.id", f"ids of the recording's nodes ({found})", known))
+        places = places_of(site, sources)
         self._nodes: list[_core.SensorRadarNode | None] = []
         self._pulses: list[int] = []  # that make one scan; a report's number counts scans
         for source in sources:
             place = places.get(source.node_id)
             config = None if place is None else node_config(site, place, source)
-            self._nodes.append(None if config is None else _configured_node(site, config, source))
+            self._nodes.append(None if config is None else configured_node(site, config, source))
             self._pulses.append(1 if config is None else config.pulse_integrator.pulses_per_scan)
         self.hub_config = hub_config(site)
-        self.hub = _core.SensorRadarHub()
-        if self.hub.configure(self.hub_config) != _core.Status.ok:
-            key = self.hub_config.invalid_field()
-            raise InputError(problem(site.name, f"pipeline.{key}", "a possible value"))
+        self.hub = configured_hub(site, self.hub_config)
 
     def scan(self, scan: Scan, samples: NDArray[Any], *, taps: bool = False) -> NodeOutput:
         """Give a node its next scan (n_samples,) [count], and the hub what the node reports.
@@ -191,12 +156,7 @@ def process_recording(
 
     processor: what turns a Cortex-M7's instructions into time.
     """
-    if recording.pipeline != site.pipeline:
-        raise InputError(
-            problem(
-                site.name, "pipeline.name", f"the recording's pipeline '{recording.pipeline}'", site.pipeline
-            )
-        )
+    check_pipeline(recording, site)
     if target == "inprocess":
         return _process(SensorRadar(site, recording.nodes), recording, site, taps=taps)
     from echofuse.emulation.deadline import Processor
@@ -212,9 +172,9 @@ def process_recording(
 def _process(
     radar: "SensorRadar | EmulatedRadar", recording: Recording, site: Site, *, taps: bool
 ) -> RunResult:
-    tables = _Tables(recording, radar.hub_config)
+    tables = RunTables(recording, radar.hub_config)
     order = scans_in_time_order(recording.nodes)
-    shown = _shown_scan(recording) if taps else -1
+    shown = shown_scan(recording) if taps else -1
     for scan in progress(order, "processing", len(order)):
         for frame in radar.frames(scan.time_us):
             tables.add_frame(frame)
@@ -229,9 +189,35 @@ def _process(
     return result
 
 
-def _configured_node(
+def check_pipeline(recording: Recording, site: Site) -> None:
+    """Raise when a site is not for a recording's pipeline."""
+    if recording.pipeline != site.pipeline:
+        expected = f"the recording's pipeline '{recording.pipeline}'"
+        raise InputError(problem(site.name, "pipeline.name", expected, site.pipeline))
+
+
+def places_of(site: Site, sources: Sequence[NodeRecording]) -> dict[int, SiteNode]:
+    """Return the site's nodes by id; a recording that has none of them is an error."""
+    places = {place.id: place for place in site.nodes}
+    if not any(source.node_id in places for source in sources):
+        found = ", ".join(str(source.node_id) for source in sources)
+        known = ", ".join(map(str, places))
+        raise InputError(problem(site.name, "node.id", f"ids of the recording's nodes ({found})", known))
+    return places
+
+
+def configured_hub(site: Site, config: "_core.SensorRadarHubConfig") -> "_core.SensorRadarHub":
+    """Return a hub that has begun nothing yet."""
+    hub = _core.SensorRadarHub()
+    if hub.configure(config) != _core.Status.ok:
+        raise InputError(problem(site.name, f"pipeline.{config.invalid_field()}", "a possible value"))
+    return hub
+
+
+def configured_node(
     site: Site, config: "_core.SensorRadarNodeConfig", source: NodeRecording
 ) -> "_core.SensorRadarNode":
+    """Return a node that knows the empty room if its recording does."""
     node = _core.SensorRadarNode()
     if node.configure(config) != _core.Status.ok:
         key = config.invalid_field()
@@ -250,100 +236,6 @@ def _configured_node(
     return node
 
 
-def _shown_scan(recording: Recording) -> int:
+def shown_scan(recording: Recording) -> int:
     """Return the scan whose stages the report shows: the middle one, like the paper's 32nd of 61."""
     return max((len(node.scans) for node in recording.nodes), default=0) // 2
-
-
-class _Tables:
-    """Collects the rows of a run."""
-
-    def __init__(self, recording: Recording, config: "_core.SensorRadarHubConfig") -> None:
-        self._recording = recording
-        self._frame_period_s = config.frame_period_s
-        self._frame_time_us: list[int] = []
-        self._points: list[NDArray[np.void]] = []
-        self._tracks: list[NDArray[np.void]] = []
-        self._baseline: list[NDArray[np.void]] = []
-        self._waiting: list[NDArray[np.void]] = []  # detections since the last frame closed
-        self._detections: list[NDArray[np.void]] = []
-        self._taps: dict[int, list[Taps]] = {}
-        self._shown: dict[str, Taps] = {}
-        self._kalman = _core.KalmanTracker()
-        if self._kalman.configure(config.tracks) != _core.Status.ok:
-            key = config.tracks.invalid_field()
-            raise InputError(problem("site", f"pipeline.tracks.{key}", "a possible value"))
-
-    def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
-        rows = np.zeros(len(output.detections), DETECTION_DTYPE)
-        rows["node"], rows["time_us"] = scan.node, scan.time_us
-        rows["delay_s"], rows["weight"] = output.detections["delay_s"], output.detections["weight"]
-        self._waiting.append(rows)
-        if output.taps:
-            keep = ("residual", "decisions", "range_clusters")
-            self._taps.setdefault(scan.node, []).append(
-                {name: output.taps[name] for name in keep if name in output.taps}
-            )
-            if shown:
-                self._shown[self._recording.nodes[scan.node].name] = output.taps
-
-    def add_frame(self, frame: FrameOutput) -> None:
-        number = len(self._frame_time_us)
-        last_us = self._frame_time_us[-1] if number else None
-        self._frame_time_us.append(frame.time_us)
-        for rows in self._waiting:
-            rows["frame"] = number
-        self._detections += self._waiting
-        self._waiting = []
-        points = np.zeros(len(frame.points), POINT_DTYPE)
-        points["frame"], points["time_us"] = number, frame.time_us
-        for column, name in enumerate(("x_m", "y_m", "members", "weight")):
-            points[name] = frame.points[:, column]
-        self._points.append(points)
-        self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
-        dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
-        _, tracks = self._kalman.process(np.ascontiguousarray(frame.points[:, :2]), dt_s)
-        self._baseline.append(_track_rows(number, frame.time_us, tracks))
-
-    def result(self, site: Site, counters: dict[str, dict[str, int]], shown: int) -> RunResult:
-        return RunResult(
-            site=site,
-            recording=self._recording,
-            frame_time_us=np.array(self._frame_time_us, np.int64),
-            detections=_joined(self._detections, DETECTION_DTYPE),
-            points=_joined(self._points, POINT_DTYPE),
-            tracks=_joined(self._tracks, TRACK_DTYPE),
-            baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
-            metrics={},
-            baseline_metrics={},
-            counters=counters,
-            stacks={self._recording.nodes[node].name: self._stack(node) for node in self._taps},
-            shown_frame=max(shown, 0),
-            shown_taps=self._shown,
-        )
-
-    def _stack(self, node: int) -> NodeStack:
-        source = self._recording.nodes[node]
-        n_samples = source.scans.shape[1]
-        nothing = np.zeros(n_samples, np.float32)
-        taps = self._taps[node]
-        return NodeStack(
-            residual=np.array([tap.get("residual", nothing) for tap in taps]),
-            decisions=np.array([tap.get("decisions", nothing) for tap in taps]).astype(np.uint8),
-            clusters=[tap.get("range_clusters", np.zeros((0, 4), np.float32)) for tap in taps],
-            delay_s=source.first_sample_s + np.arange(n_samples) / source.sample_rate_hz,
-        )
-
-
-def _track_rows(frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
-    rows = np.zeros(len(tracks), TRACK_DTYPE)
-    rows["frame"], rows["time_us"] = frame, time_us
-    for name in TRACK_DTYPE.names or ():
-        if name not in ("frame", "time_us"):
-            rows[name] = tracks[name]
-    return rows
-
-
-def _joined(tables: Iterable[NDArray[np.void]], dtype: "np.dtype[np.void]") -> NDArray[np.void]:
-    tables = list(tables)
-    return np.concatenate(tables) if tables else np.zeros(0, dtype)

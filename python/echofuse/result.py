@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from echofuse.recording import Outputs, Recording, frame_digest
 
 if TYPE_CHECKING:
+    from echofuse.emulation.run import Emulation
     from echofuse.site import Site
 
 #: One row a point that the tracker was given. [m]
@@ -45,6 +46,7 @@ class RunResult:
         default_factory=dict
     )  # "hub" and each node's name -> counter -> count
     stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
+    emulation: "Emulation | None" = None  # faults and counters, of an emulated run
     shown_frame: int = 0  # the frame whose stages the report shows
     shown_taps: dict[str, dict[str, NDArray[Any]]] = field(
         default_factory=dict

@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
         return _run_seeds(options)
     site, name = _site_of_case(options.case, options.people)
     recording = _simulated(site, options.case, options.people, options.seed)
-    result = _processed(recording, site, options)
+    result = _processed(recording, site, options, options.seed)
     folder = options.out or Path("runs") / f"{name}-{options.seed}"
     return _finish(result, folder, report=not options.no_report)
 
@@ -57,7 +57,7 @@ def verify(options: Namespace) -> int:
             problem(options.recording, "outputs", "what a pipeline said (run or process writes it)")
         )
     site = _site_of_recording(recording, options)
-    result = process_recording(replace(recording, outputs=None), site, target=options.target)
+    result = _replayed(replace(recording, outputs=None), site, options.target)
     replayed = result.outputs().frame_hash
     recorded = recording.outputs.frame_hash
     same = min(len(recorded), len(replayed))
@@ -157,15 +157,28 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
 }
 
 
-def _processed(recording: Recording, site: Site, options: Namespace) -> RunResult:
+def _processed(
+    recording: Recording, site: Site, options: Namespace, seed: int = 0, *, taps: bool = True
+) -> RunResult:
+    taps = taps and not options.no_report
+    if getattr(options, "faults", None) is not None:
+        from echofuse.emulation.command import run_with_faults
+
+        return run_with_faults(recording, site, options.faults, seed=seed, target=options.target, taps=taps)
     from echofuse.emulation.deadline import Processor
 
     processor = Processor(
         clock_hz=1e6 * options.clock_mhz, cycles_per_instruction=options.cycles_per_instruction
     )
-    return process_recording(
-        recording, site, taps=not options.no_report, target=options.target, processor=processor
-    )
+    return process_recording(recording, site, taps=taps, target=options.target, processor=processor)
+
+
+def _replayed(recording: Recording, site: Site, target: str) -> RunResult:
+    if recording.emulated is None:
+        return process_recording(recording, site, target=target)
+    from echofuse.emulation.command import replay
+
+    return replay(recording, site, recording.emulated, target=target)
 
 
 def _site_of_case(case: str, people: int) -> tuple[Site, str]:
@@ -208,9 +221,12 @@ def _run_seeds(options: Namespace) -> int:
     site, _ = _site_of_case(options.case, options.people)
     rows: list[dict[str, float]] = []
     baselines: list[dict[str, float]] = []
+    unaccounted = 0  # runs whose faults are not those in the counters
     print("seed  " + "  ".join(f"{column:>20s}" for column in SEED_COLUMNS))
     for seed in progress(options.seeds, "seeds", len(options.seeds)):
-        result = process_recording(_simulated(site, options.case, options.people, seed), site)
+        recording = _simulated(site, options.case, options.people, seed)
+        result = _processed(recording, site, options, seed, taps=False)
+        unaccounted += result.emulation is not None and bool(result.emulation.account.problems)
         rows.append(result.metrics)
         baselines.append(result.baseline_metrics)
         print(f"{seed:4d}  " + _cells(result.metrics))
@@ -223,7 +239,9 @@ def _run_seeds(options: Namespace) -> int:
             options.out / "seeds.json",
             {str(seed): row for seed, row in zip(options.seeds, rows, strict=True)},
         )
-    return 0
+    if unaccounted:
+        print(f"{unaccounted} runs with faults that the counters do not account for")
+    return 1 if unaccounted else 0
 
 
 def _cells(metrics: dict[str, float]) -> str:
@@ -249,7 +267,12 @@ def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
         print(f"wrote {write_report(result, folder)}")
     else:
         print(f"wrote {folder}")
-    return _verdict(result)
+    if result.emulation is None:
+        return _verdict(result)
+    from echofuse.emulation.command import tell, write_injections
+
+    write_injections(folder / "injections.csv", result)
+    return tell(result)
 
 
 def _verdict(result: RunResult) -> int:

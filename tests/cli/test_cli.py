@@ -203,3 +203,27 @@ def _resample(source: Path, target: Path, sample_rate_hz: float) -> None:
             )
         )
     write(target, replace(recording, nodes=tuple(nodes), outputs=None))
+
+
+def test_a_run_with_faults_tells_them_and_can_be_verified(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    faults = tmp_path / "mine.toml"
+    faults.write_text("[link]\nloss = 0.1\n")
+    arguments = ["run", "sensor-radar", "--no-report", "--faults", str(faults), "--out", str(tmp_path)]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert "every fault is accounted for, and no other counter moved" in said
+    with (tmp_path / "injections.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    hub = json.loads((tmp_path / "counters.json").read_text())["hub"]
+    assert len(rows) == hub["lost"] > 10
+    assert {row["kind"] for row in rows} == {"link.loss"}
+    emulated = read(tmp_path / "recording.h5").emulated
+    assert emulated is not None
+    assert (emulated.scenario, emulated.seed) == ("mine", 0)
+    assert main(["verify", str(tmp_path / "recording.h5")]) == 0
+    assert "61 frames, all bytes the same" in capsys.readouterr().out
+    faults.write_text("[link]\nlos = 0.1\n")
+    assert "mine.toml: link.los: expected a known key (did you mean loss?)" in failing(capsys, *arguments)
+    assert "lost" in failing(capsys, "run", "sensor-radar", "--faults", "no-such-scenario")

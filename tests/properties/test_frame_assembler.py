@@ -91,5 +91,53 @@ def test_a_restarted_node_is_lined_up_anew():  # type: ignore[no-untyped-def]
             stage.receive(node, frame, DELAY, WEIGHT, now)
         while (closed := stage.poll(now + 90_000)[1]) is not None:
             reported.append(closed[2])
-    assert reported == [4] * 10 + [3] * 3 + [4] * 7
+    assert reported == [4] * 10 + [3] * 2 + [4] * 8
+    assert stage.counters.late == 2
     assert stage.counters.resynchronised == 1
+
+
+def test_a_restart_after_a_while_is_seen_at_once():  # type: ignore[no-untyped-def]
+    stage, reported = assembler(), []
+    for k in range(40):
+        for node in range(4):
+            frame = k if node != 2 or k < 25 else k - 25
+            stage.receive(node, frame, DELAY, WEIGHT, k * 100_000)
+        while (closed := stage.poll(k * 100_000 + 90_000)[1]) is not None:
+            reported.append(closed[2])
+    assert reported == [4] * 40
+    assert stage.counters.late == 0
+    assert stage.counters.resynchronised == 1
+
+
+def test_a_scan_counted_twice_holds_up_nobody_else():  # type: ignore[no-untyped-def]
+    """Its node is out of step for two reports, and then lined up anew."""
+    stage, reported = assembler(), []
+    for k in range(20):
+        now = k * 100_000
+        for node in range(4):
+            stage.receive(node, k + int(node == 1 and k > 10), DELAY, WEIGHT, now)
+        if k == 10:
+            while (closed := stage.poll(now)[1]) is not None:
+                reported.append(closed[2])
+            stage.receive(1, 11, DELAY, WEIGHT, now + 5_000)
+        while (closed := stage.poll(now + 90_000)[1]) is not None:
+            reported.append(closed[2])
+    assert reported == [4] * 11 + [3] + [4] * 8
+    assert stage.counters.early == 2
+    assert stage.counters.resynchronised == 1
+
+
+@given(events=EVENTS)
+def test_every_report_that_is_missing_is_counted(events):  # type: ignore[no-untyped-def]
+    """Of the frames up to the newest closed one, every node's report was accepted, lost or absent."""
+    stage, now, number = assembler(), 0, -1
+    for node, frame, wait, _ in events:
+        now += wait
+        stage.receive(node, frame, DELAY, WEIGHT, now)
+        while (closed := stage.poll(now)[1]) is not None:
+            number = closed[1]
+    while (closed := stage.poll(now + 10**9)[1]) is not None:
+        number = closed[1]
+    counters = stage.counters
+    assert counters.accepted + counters.lost + counters.absent == len(NODES) * (number + 1)
+    assert counters.frames <= number + 1

@@ -74,7 +74,7 @@ def vectors() -> list[str]:
         ),
         vector("track", echofuse.Tracks_1_0(time_us=1_234_567, frame=12, tracks=[track]), 6201, 61440, 12),
         vector(
-            "health", echofuse.NodeHealth_1_0(kind=1, values=list(range(0, 29 * 255, 255))), 6205, 61440, 4
+            "health", echofuse.NodeHealth_1_0(kind=1, values=list(range(0, 31 * 255, 255))), 6205, 61440, 4
         ),
         vector(
             "synchronization",

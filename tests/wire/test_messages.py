@@ -50,7 +50,7 @@ def test_tracks(vectors) -> None:
 
 def test_health(vectors) -> None:
     counters = codec.parse_health(vectors["health"].payload)
-    assert list(counters.values()) == list(range(0, 29 * 255, 255))
+    assert list(counters.values()) == list(range(0, 31 * 255, 255))
 
 
 def test_a_heartbeat_is_sent_once_a_second(vectors) -> None:

@@ -68,6 +68,8 @@ HEALTH_VALUES: dict[int, tuple[str, ...]] = {
         "lost",
         "resynchronised",
         "frames",
+        "absent",
+        "slow",
         "tuples",
         "dropped_tuples",
         "dropped_detections",
@@ -222,6 +224,15 @@ def parse_tracks(payload: bytes) -> tuple[int, int, NDArray[np.void]]:
         int.from_bytes(payload[7:11], "little"),
         np.frombuffer(payload[12:], TRACK, payload[11]),
     )
+
+
+def tracks_payload(time_us: int, frame: int, tracks: NDArray[np.void]) -> bytes:
+    """Return the payload of echofuse.Tracks; tracks (n,) with the fields of TRACK, n at most 24."""
+    rows = np.zeros(len(tracks), TRACK)
+    for name in TRACK.names or ():
+        rows[name] = tracks[name]
+    head = (time_us & (1 << 56) - 1).to_bytes(7, "little") + (frame & 0xFFFFFFFF).to_bytes(4, "little")
+    return head + bytes([len(rows)]) + rows.tobytes()
 
 
 def parse_health(payload: bytes) -> dict[str, int]:

@@ -17,8 +17,9 @@ from echofuse.emulation.deadline import Processor
 from echofuse.emulation.firmware import FirmwareRadar
 from echofuse.emulation.image_size import image_size
 from echofuse.emulation.targets import firmware_image, open_board
-from echofuse.pipeline import FrameOutput, NodeOutput, Scan, SensorRadar, node_config
+from echofuse.pipeline import SensorRadar, node_config
 from echofuse.recording import NodeRecording
+from echofuse.run_tables import FrameOutput, NodeOutput, Scan
 from echofuse.site import Site
 
 SAME_POSITION_M = 1e-3  # of one track on two targets

@@ -72,6 +72,19 @@ class Machine:
         if self.read_register("echofuse.apply") is not True:
             raise TargetError(f"{self.board.name}: refuses the site's configuration")
 
+    def show_empty_room(self, scans: Sequence[NDArray[Any]]) -> None:
+        """Give a node its scans of the empty room, (n_scans, n_samples), and see that it has taken them."""
+        self.write_register("echofuse.empty_room_scans_left", np.uint16(len(scans)))
+        for scan in scans:
+            self.step(_CONFIG_STEP_US, scan=np.ascontiguousarray(scan, np.float32))
+        if self.read_register("echofuse.empty_room_scans_left") != 0:
+            raise TargetError(f"{self.board.name}: has not taken the {len(scans)} scans of the empty room")
+
+    @property
+    def requests(self) -> int:
+        """How many frames the harness has sent to configure it."""
+        return sum(self._requests.values())
+
     def _access(self, name: str, request: bytes) -> object:
         service = codec.REGISTER_ACCESS
         self._requests[service] += 1
@@ -117,13 +130,7 @@ class FirmwareRadar:
         self.names[node_id] = name
         self._to_nodes[node_id] = b""
         machine.configure(config)
-        machine.write_register("echofuse.empty_room_scans_left", np.uint16(len(empty_room)))
-        for scan in empty_room:
-            machine.step(_CONFIG_STEP_US, scan=np.ascontiguousarray(scan, np.float32))
-        if machine.read_register("echofuse.empty_room_scans_left") != 0:
-            raise TargetError(
-                f"{machine.board.name}: has not taken the {len(empty_room)} scans of the empty room"
-            )
+        machine.show_empty_room(empty_room)
 
     def scan(self, node_id: int, samples: NDArray[np.float32], time_us: int) -> NDArray[np.void]:
         """Give a node its next scan (n_samples,), and the hub what it says; its detections (n,)."""

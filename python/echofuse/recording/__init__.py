@@ -3,6 +3,7 @@
 from echofuse.recording.model import (
     DETECTION_DTYPE,
     TRACK_DTYPE,
+    Emulated,
     NodeRecording,
     Outputs,
     PersonTruth,
@@ -15,6 +16,7 @@ from echofuse.recording.writer import RecordingWriter, frame_digest, write
 __all__ = [
     "DETECTION_DTYPE",
     "TRACK_DTYPE",
+    "Emulated",
     "NodeRecording",
     "Outputs",
     "PersonTruth",

@@ -82,6 +82,15 @@ class Outputs:
     tracks: NDArray[np.void]  # (n,) TRACK_DTYPE, ascending frame
 
 
+@dataclass(frozen=True, kw_only=True)
+class Emulated:
+    """By which faults the outputs came about (docs/emulation.md); the scans are those before any fault."""
+
+    scenario: str  # name
+    seed: int
+    scenario_toml: str  # the scenario file as used, may be empty
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
     """One recording, as `read` returns it."""
@@ -92,3 +101,4 @@ class Recording:
     nodes: tuple[NodeRecording, ...]
     truth: tuple[PersonTruth, ...] = ()
     outputs: Outputs | None = None
+    emulated: Emulated | None = None

@@ -15,6 +15,7 @@ from echofuse.recording.model import (
     FORMAT,
     TRACK_DTYPE,
     VERSION,
+    Emulated,
     NodeRecording,
     Outputs,
     PersonTruth,
@@ -80,18 +81,30 @@ class _Reader:
             nodes=recordings,
             truth=self.truth(),
             outputs=self.outputs(),
+            emulated=self.emulated(),
+        )
+
+    def emulated(self) -> Emulated | None:
+        if "scenario" not in self.file:
+            return None
+        source = self.file["scenario"]
+        return Emulated(
+            scenario=self.string(source, "name"),
+            seed=self.integer(source, "seed"),
+            scenario_toml=self.text("scenario", "one string, the scenario file"),
         )
 
     def site(self) -> str:
-        if "site" not in self.file:
-            return ""
-        dataset = self.file["site"]
+        return self.text("site", "one string, the site file") if "site" in self.file else ""
+
+    def text(self, key: str, expected: str) -> str:
+        dataset = self.file[key]
         if (
             not isinstance(dataset, h5py.Dataset)
             or dataset.shape != ()
             or h5py.check_string_dtype(dataset.dtype) is None
         ):
-            raise self.error("/site", "one string, the site file")
+            raise self.error(f"/{key}", expected)
         return _text(dataset[()])
 
     def node(self, name: str) -> NodeRecording:

@@ -18,6 +18,7 @@ from echofuse.recording.model import (
     FORMAT,
     TRACK_DTYPE,
     VERSION,
+    Emulated,
     NodeRecording,
     PersonTruth,
     Pulse,
@@ -83,6 +84,12 @@ class RecordingWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def note_emulation(self, emulated: Emulated) -> None:
+        """Note by which faults the outputs come about."""
+        self._file["scenario"] = emulated.scenario_toml
+        self._file["scenario"].attrs["name"] = emulated.scenario
+        self._file["scenario"].attrs["seed"] = emulated.seed
 
     def add_node(
         self,
@@ -196,6 +203,8 @@ def write(path: str | Path, recording: Recording) -> None:
         created=recording.created,
         target=target,
     ) as writer:
+        if recording.emulated is not None:
+            writer.note_emulation(recording.emulated)
         for node in recording.nodes:
             _write_node(writer, node)
         for person in recording.truth:

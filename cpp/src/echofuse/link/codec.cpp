@@ -18,8 +18,8 @@ constexpr std::size_t kTimeBytes = 7;  ///< a 56-bit number of microseconds
 constexpr std::size_t kScanHeaderBytes = kTimeBytes + 2;
 constexpr std::uint64_t kTimeMask = (std::uint64_t{1} << 56) - 1;
 
-/// What a generated serialize() left: the length, or 0 for its errors. By reference, since it is written by the call whose
-/// result stands beside it.
+/// A generated function's answer: the length, or 0 for its errors.
+/// The length by reference: the call that sets it is an argument too, and may be evaluated after a copy was made.
 std::size_t length_or_nothing(std::int8_t result, const std::size_t& length) {
   return result >= 0 ? length : 0;
 }

@@ -85,5 +85,7 @@ def _counters(stage):  # type: ignore[no-untyped-def]
         "lost",
         "resynchronised",
         "frames",
+        "absent",
+        "slow",
     )
     return {name: getattr(stage.counters, name) for name in names}

@@ -16,30 +16,40 @@ namespace echofuse::hub {
 struct FrameAssemblerConfig {
   std::int32_t deadline_us = 80000;  ///< [us] after its first report a frame closes, > 0
   int dead_after_frames = 10;        ///< a node that missed this many in a row is not waited for, >= 1
-  int resync_after_reports = 10;     ///< out of step this often in a row, a node is lined up anew, >= 1
-  float max_delay_s = 1e-6f;         ///< [s] a longer delay makes a report malformed, > 0
+  int resync_after_reports = 3;  ///< the so many-th report out of step in a row lines a node up anew, >= 1
+  float max_delay_s = 1e-6f;     ///< [s] a longer delay makes a report malformed, > 0
 };
 
 const char* invalid_field(const FrameAssemblerConfig& config);
 
-/// Health of the stage since configure() or reset(). Every report is in exactly one of the first six.
+/// Health of the stage since configure() or reset(). Every report is in exactly one of the first six; and of the
+/// reports that every node should have sent for every frame so far, open ones left out, each is in exactly one of
+/// accepted, lost and absent.
 struct FrameAssemblerCounters {
   std::uint32_t accepted = 0;
   std::uint32_t late = 0;          ///< its frame was closed
-  std::uint32_t early = 0;         ///< more than two frames ahead of the one that is waited for
+  std::uint32_t early = 0;         ///< more than two frames ahead, or before its frame can be due
   std::uint32_t doubled = 0;       ///< the node's same scan again
   std::uint32_t malformed = 0;     ///< not finite, not ascending, too long, negative weight
   std::uint32_t unknown_node = 0;  ///< not of this site
   std::uint32_t lost = 0;          ///< missing from a closed frame, of a node that was waited for
   std::uint32_t resynchronised = 0;
   std::uint32_t frames = 0;  ///< closed
+  std::uint32_t absent = 0;  ///< as lost, of a node that was not waited for
+  std::uint32_t slow = 0;    ///< accepted, but when more than half of the deadline had passed
 };
 
 /// Lines up the nodes' reports: one frame holds each node's scan of the same instant.
 ///
 /// A node's scan counter tells its frames apart; its offset against the hub's counter is learnt from the
-/// node's first report, which belongs to the frame then open. A frame closes when all live nodes are in, when
-/// its deadline has passed, or when a report came that is two frames ahead. Time is an argument.
+/// node's first report, which belongs to the frame then open, or to the next one if half of the usual time between
+/// frames has passed. A frame closes when all live nodes are in, when its deadline has passed, or when a report came
+/// that is two frames ahead. Time is an argument.
+///
+/// A report is out of step when its frame is closed, far ahead, or cannot be due: less than half of the usual time
+/// between frames has passed (so a node that counts one scan too many does not open frames before the others).
+/// A node is lined up anew when that happens several times in a row, and at once when it is off by more frames than
+/// any link delays a report: it has restarted.
 /// Reference: python/echofuse/reference/hub/measure/frame_assembler.py
 class FrameAssembler {
  public:
@@ -79,11 +89,18 @@ class FrameAssembler {
     int missed = 0;                ///< frames in a row
   };
 
+  static constexpr std::int32_t kFarFrames = 16;  ///< farther off, a node has restarted
+
   bool well_formed(const link::Detections& report) const;
   OpenFrame& slot(std::size_t ahead) { return slots_[(head_ + ahead) % kOpenFrames]; }
   bool any_open() const;
+  bool any_live() const;
   bool complete();
-  void count_out_of_step(NodeState& node, std::uint32_t& counter);
+  std::int32_t ahead_of(const NodeState& node, std::uint32_t frame) const;
+  void line_up(NodeState& node, std::size_t node_index, std::uint32_t frame, std::int64_t now_us);
+  bool out_of_step(std::int32_t ahead, std::int64_t now_us);
+  void skip(std::int32_t frames);
+  void learn_interval(std::uint32_t number, std::int64_t now_us);
   void accept(const link::Detections& report, std::size_t node_index, std::size_t ahead, std::int64_t now_us);
   void close_head(Frame* frame);
 
@@ -93,6 +110,10 @@ class FrameAssembler {
   std::array<OpenFrame, kOpenFrames> slots_;
   std::size_t head_ = 0;      ///< index of the oldest frame's slot
   std::uint32_t number_ = 0;  ///< of the oldest frame
+  bool opened_any_ = false;
+  std::uint32_t newest_number_ = 0;  ///< of the newest frame that was opened
+  std::int64_t newest_us_ = 0;       ///< [us] when it was
+  std::int64_t interval_us_ = 0;     ///< [us] usual time from frame to frame; 0: not known yet
   FrameAssemblerCounters counters_;
 };
 

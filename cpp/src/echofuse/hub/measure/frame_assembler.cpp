@@ -33,6 +33,8 @@ void FrameAssembler::reset() {
   for (OpenFrame& frame : slots_) frame.open = false;
   head_ = 0;
   number_ = 0;
+  opened_any_ = false;
+  interval_us_ = 0;
   counters_ = FrameAssemblerCounters{};
 }
 
@@ -49,6 +51,12 @@ bool FrameAssembler::well_formed(const link::Detections& report) const {
 bool FrameAssembler::any_open() const {
   for (const OpenFrame& frame : slots_)
     if (frame.open) return true;
+  return false;
+}
+
+bool FrameAssembler::any_live() const {
+  for (std::size_t i = 0; i < n_nodes_; ++i)
+    if (nodes_[i].live) return true;
   return false;
 }
 
@@ -69,34 +77,73 @@ Status FrameAssembler::receive(const link::Detections& report, std::int64_t now_
     ++counters_.doubled;
     return Status::kOk;
   }
-  if (!node.aligned) {
-    const bool there_already = slot(0).open && slot(0).reports[index].count >= 0;
-    node.offset = number_ + (there_already ? 1u : 0u) - report.frame;
-    node.aligned = true;
-  }
-  std::uint32_t ahead = report.frame + node.offset - number_;
-  if (ahead > 0x7FFFFFFFu) {
-    count_out_of_step(node, counters_.late);
-    return Status::kOk;
+  if (!node.aligned) line_up(node, index, report.frame, now_us);
+  std::int32_t ahead = ahead_of(node, report.frame);
+  if (out_of_step(ahead, now_us)) {
+    const bool far = ahead > kFarFrames || ahead < -kFarFrames;
+    if (!far && ++node.out_of_step < config_.resync_after_reports) {
+      ++(ahead < 0 ? counters_.late : counters_.early);
+      return Status::kOk;
+    }
+    ++counters_.resynchronised;
+    line_up(node, index, report.frame, now_us);
+    ahead = ahead_of(node, report.frame);
   }
   if (!any_open()) {  // nobody is waited for: the frames in between were lost by all
-    number_ += ahead;
+    skip(ahead);
     ahead = 0;
   }
-  if (ahead >= kOpenFrames) {
-    count_out_of_step(node, counters_.early);
-    return Status::kOk;
-  }
-  accept(report, index, ahead, now_us);
+  accept(report, index, static_cast<std::size_t>(ahead), now_us);
   return Status::kOk;
 }
 
-void FrameAssembler::count_out_of_step(NodeState& node, std::uint32_t& counter) {
-  ++counter;
-  if (++node.out_of_step < config_.resync_after_reports) return;
-  node.aligned = false;
+/// Frames from the oldest one to that of a node's report; negative when it is closed.
+std::int32_t FrameAssembler::ahead_of(const NodeState& node, std::uint32_t frame) const {
+  return static_cast<std::int32_t>(frame + node.offset - number_);
+}
+
+/// Takes a node's report as one of the frame that is open, or of the next one.
+void FrameAssembler::line_up(NodeState& node, std::size_t node_index, std::uint32_t frame,
+                             std::int64_t now_us) {
+  const OpenFrame& head = slot(0);
+  const bool is_past = interval_us_ > 0 && 2 * (now_us - head.opened_us) > interval_us_;
+  const bool is_next = head.open && (head.reports[node_index].count >= 0 || is_past);
+  node.offset = number_ + (is_next ? 1U : 0U) - frame;
+  node.aligned = true;
   node.out_of_step = 0;
-  ++counters_.resynchronised;
+}
+
+/// Whether a report is not one of the frames that are open, and would open none that can be due.
+bool FrameAssembler::out_of_step(std::int32_t ahead, std::int64_t now_us) {
+  if (ahead < 0) return true;
+  if (ahead >= static_cast<std::int32_t>(kOpenFrames)) {
+    if (any_open()) return true;
+  } else if (slot(static_cast<std::size_t>(ahead)).open) {
+    return false;
+  }
+  if (!opened_any_ || interval_us_ == 0) return false;
+  const std::int64_t steps =
+      static_cast<std::int32_t>(number_ + static_cast<std::uint32_t>(ahead) - newest_number_);
+  return steps > 0 && 2 * (now_us - newest_us_) < (2 * steps - 1) * interval_us_;
+}
+
+/// Passes over frames of which nothing came.
+void FrameAssembler::skip(std::int32_t frames) {
+  for (; frames > 0 && any_live(); --frames) close_head(nullptr);
+  counters_.absent += static_cast<std::uint32_t>(frames) * static_cast<std::uint32_t>(n_nodes_);
+  number_ += static_cast<std::uint32_t>(frames);
+}
+
+void FrameAssembler::learn_interval(std::uint32_t number, std::int64_t now_us) {
+  const std::int64_t steps = static_cast<std::int32_t>(number - newest_number_);
+  if (opened_any_ && steps <= 0) return;
+  if (opened_any_) {
+    const std::int64_t step_us = (now_us - newest_us_) / steps;
+    interval_us_ = interval_us_ == 0 ? step_us : interval_us_ + (step_us - interval_us_) / 4;
+  }
+  opened_any_ = true;
+  newest_number_ = number;
+  newest_us_ = now_us;
 }
 
 void FrameAssembler::accept(const link::Detections& report, std::size_t node_index, std::size_t ahead,
@@ -106,6 +153,7 @@ void FrameAssembler::accept(const link::Detections& report, std::size_t node_ind
     frame.open = true;
     frame.opened_us = now_us;
     for (Report& kept : frame.reports) kept.count = -1;
+    learn_interval(number_ + static_cast<std::uint32_t>(ahead), now_us);
   }
   Report& kept = frame.reports[node_index];
   if (kept.count >= 0) {  // lined up anew onto a scan that is there already
@@ -119,6 +167,7 @@ void FrameAssembler::accept(const link::Detections& report, std::size_t node_ind
   node.out_of_step = 0;
   node.live = true;
   ++counters_.accepted;
+  if (2 * (now_us - frame.opened_us) > config_.deadline_us) ++counters_.slow;
 }
 
 bool FrameAssembler::complete() {
@@ -148,7 +197,10 @@ void FrameAssembler::close_head(Frame* frame) {
     NodeState& node = nodes_[i];
     const Report& report = head.reports[i];
     if (!head.open || report.count < 0) {
-      if (!node.live) continue;
+      if (!node.live) {
+        ++counters_.absent;
+        continue;
+      }
       ++counters_.lost;
       if (++node.missed >= config_.dead_after_frames) node.live = false;
       continue;

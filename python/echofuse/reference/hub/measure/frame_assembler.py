@@ -10,6 +10,7 @@ from echofuse.reference.hub.measure.measurement_selection import Frame
 
 SPEED_OF_LIGHT_MPS = 299_792_458.0
 OPEN_FRAMES = 3
+FAR_FRAMES = 16
 
 
 class FrameAssemblerConfig(Protocol):
@@ -45,6 +46,8 @@ class Counters:
     lost: int = 0
     resynchronised: int = 0
     frames: int = 0
+    absent: int = 0
+    slow: int = 0
 
 
 @dataclass
@@ -70,6 +73,8 @@ class FrameAssembler:
         self.nodes = [_Node() for _ in node_ids]
         self.number = 0  # of the oldest frame that may still come
         self.open: dict[int, _OpenFrame] = {}
+        self.newest: tuple[int, int] | None = None  # number and time [us] of the newest frame opened
+        self.interval_us = 0  # usual time from frame to frame; 0: not known yet
         self.counters = Counters()
 
     def well_formed(self, report: Report) -> bool:
@@ -94,33 +99,64 @@ class FrameAssembler:
             self.counters.doubled += 1
             return True
         if node.offset is None:
-            oldest = self.open.get(self.number)
-            node.offset = self.number + int(oldest is not None and index in oldest.reports) - report.frame
+            node.offset = self._lined_up(index, report.frame, now_us)
         target = report.frame + node.offset
-        if target < self.number:
-            self.counters.late += 1
-            self._out_of_step(node)
-            return True
+        if self._is_out_of_step(target, now_us):
+            node.out_of_step += 1
+            far = abs(target - self.number) > FAR_FRAMES
+            if not far and node.out_of_step < self.config.resync_after_reports:
+                if target < self.number:
+                    self.counters.late += 1
+                else:
+                    self.counters.early += 1
+                return True
+            self.counters.resynchronised += 1
+            node.out_of_step = 0
+            node.offset = self._lined_up(index, report.frame, now_us)
+            target = report.frame + node.offset
         if not self.open:
-            self.number = target
-        if target >= self.number + OPEN_FRAMES:
-            self.counters.early += 1
-            self._out_of_step(node)
-            return True
-        frame = self.open.setdefault(target, _OpenFrame(now_us))
+            while self.number < target:
+                self._close({})
+        if target not in self.open:
+            self._learn_interval(target, now_us)
+            self.open[target] = _OpenFrame(now_us)
+        frame = self.open[target]
         if index in frame.reports:
             self.counters.doubled += 1
             return True
         frame.reports[index] = report
         node.last_frame, node.out_of_step, node.live = report.frame, 0, True
         self.counters.accepted += 1
+        self.counters.slow += 2 * (now_us - frame.opened_us) > self.config.deadline_us
         return True
 
-    def _out_of_step(self, node: _Node) -> None:
-        node.out_of_step += 1
-        if node.out_of_step >= self.config.resync_after_reports:
-            node.offset, node.out_of_step = None, 0
-            self.counters.resynchronised += 1
+    def _lined_up(self, index: int, frame: int, now_us: int) -> int:
+        """The offset that makes a report one of the frame that is open, or of the next one."""
+        oldest = self.open.get(self.number)
+        is_next = oldest is not None and (
+            index in oldest.reports or 0 < self.interval_us < 2 * (now_us - oldest.opened_us)
+        )
+        return self.number + int(is_next) - frame
+
+    def _is_out_of_step(self, target: int, now_us: int) -> bool:
+        """Whether a report is not one of the frames that are open, and would open none that can be due."""
+        if target < self.number or (self.open and target >= self.number + OPEN_FRAMES):
+            return True
+        if target in self.open or self.newest is None or self.interval_us == 0:
+            return False
+        number, opened_us = self.newest
+        steps = target - number
+        return steps > 0 and now_us - opened_us < (steps - 0.5) * self.interval_us
+
+    def _learn_interval(self, number: int, now_us: int) -> None:
+        if self.newest is not None:
+            steps = number - self.newest[0]
+            if steps <= 0:
+                return
+            step_us = (now_us - self.newest[1]) // steps
+            change_us = int((step_us - self.interval_us) / 4)  # as integers divide in C++
+            self.interval_us = step_us if self.interval_us == 0 else self.interval_us + change_us
+        self.newest = (number, now_us)
 
     def poll(self, now_us: int) -> ClosedFrame | None:
         """The oldest frame, if all live nodes are in, it is overdue, or two newer ones exist."""
@@ -154,4 +190,6 @@ class FrameAssembler:
                 self.counters.lost += 1
                 node.missed += 1
                 node.live = node.missed < self.config.dead_after_frames
+            else:
+                self.counters.absent += 1
         self.number += 1

@@ -15,7 +15,7 @@ _SUFFIX = {"process": "", "cortex-m7": ".elf"}
 def firmware_image(target: str, role: str) -> Path:
     """Return the image of a role, "node" or "hub": in the folder ECHOFUSE_FIRMWARE, or in the package."""
     named = os.environ.get("ECHOFUSE_FIRMWARE")
-    folder = Path(named) if named else Path(__file__).parent.parent / "firmware"
+    folder = Path(named) if named else Path(__file__).parents[2] / "firmware"
     image = folder / target / f"sensor_radar_{role}{_SUFFIX[target]}"
     if not image.is_file():
         hint = "make firmware" if target == "cortex-m7" else "make build"

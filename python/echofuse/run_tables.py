@@ -1,0 +1,140 @@
+"""Collects what nodes and hub say, scan by scan and frame by frame, into the tables of a run."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echofuse import _core
+from echofuse.errors import InputError, problem
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, Recording
+from echofuse.result import POINT_DTYPE, NodeStack, RunResult
+from echofuse.site import Site
+
+__all__ = ["FrameOutput", "NodeOutput", "RunTables", "Scan", "Taps"]
+
+Taps = dict[str, NDArray[np.float32]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scan:
+    """One scan on its way to its node."""
+
+    time_us: int
+    node: int  # index into the recording's nodes
+    index: int  # index into that node's scans
+
+
+@dataclass(frozen=True, kw_only=True)
+class NodeOutput:
+    """What one node said about one scan."""
+
+    detections: NDArray[np.void]  # delay_s, weight
+    taps: Taps = field(default_factory=dict)  # when asked for
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameOutput:
+    """What the hub said about one frame."""
+
+    time_us: int
+    points: NDArray[np.float32]  # (n, 4) x [m], y [m], members, weight
+    tracks: NDArray[np.void]
+
+
+class RunTables:
+    """Collects the rows of a run."""
+
+    def __init__(self, recording: Recording, config: "_core.SensorRadarHubConfig") -> None:
+        self._recording = recording
+        self._frame_period_s = config.frame_period_s
+        self._frame_time_us: list[int] = []
+        self._points: list[NDArray[np.void]] = []
+        self._tracks: list[NDArray[np.void]] = []
+        self._baseline: list[NDArray[np.void]] = []
+        self._waiting: list[NDArray[np.void]] = []  # detections since the last frame closed
+        self._detections: list[NDArray[np.void]] = []
+        self._taps: dict[int, list[Taps]] = {}
+        self._shown: dict[str, Taps] = {}
+        self._kalman = _core.KalmanTracker()
+        if self._kalman.configure(config.tracks) != _core.Status.ok:
+            key = config.tracks.invalid_field()
+            raise InputError(problem("site", f"pipeline.tracks.{key}", "a possible value"))
+
+    def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
+        """Take what a node said of a scan; `shown` when the report's pictures are of this one."""
+        rows = np.zeros(len(output.detections), DETECTION_DTYPE)
+        rows["node"], rows["time_us"] = scan.node, scan.time_us
+        rows["delay_s"], rows["weight"] = output.detections["delay_s"], output.detections["weight"]
+        self._waiting.append(rows)
+        if output.taps:
+            keep = ("residual", "decisions", "range_clusters")
+            self._taps.setdefault(scan.node, []).append(
+                {name: output.taps[name] for name in keep if name in output.taps}
+            )
+            if shown:
+                self._shown[self._recording.nodes[scan.node].name] = output.taps
+
+    def add_frame(self, frame: FrameOutput) -> None:
+        """Take what the hub said of a frame, and count the detections since the last one as its."""
+        number = len(self._frame_time_us)
+        last_us = self._frame_time_us[-1] if number else None
+        self._frame_time_us.append(frame.time_us)
+        for rows in self._waiting:
+            rows["frame"] = number
+        self._detections += self._waiting
+        self._waiting = []
+        points = np.zeros(len(frame.points), POINT_DTYPE)
+        points["frame"], points["time_us"] = number, frame.time_us
+        for column, name in enumerate(("x_m", "y_m", "members", "weight")):
+            points[name] = frame.points[:, column]
+        self._points.append(points)
+        self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
+        dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
+        _, tracks = self._kalman.process(np.ascontiguousarray(frame.points[:, :2]), dt_s)
+        self._baseline.append(_track_rows(number, frame.time_us, tracks))
+
+    def result(self, site: Site, counters: dict[str, dict[str, int]], shown: int) -> RunResult:
+        """Return everything that was collected; its metrics are still to be measured."""
+        return RunResult(
+            site=site,
+            recording=self._recording,
+            frame_time_us=np.array(self._frame_time_us, np.int64),
+            detections=_joined(self._detections, DETECTION_DTYPE),
+            points=_joined(self._points, POINT_DTYPE),
+            tracks=_joined(self._tracks, TRACK_DTYPE),
+            baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
+            metrics={},
+            baseline_metrics={},
+            counters=counters,
+            stacks={self._recording.nodes[node].name: self._stack(node) for node in self._taps},
+            shown_frame=max(shown, 0),
+            shown_taps=self._shown,
+        )
+
+    def _stack(self, node: int) -> NodeStack:
+        source = self._recording.nodes[node]
+        n_samples = source.scans.shape[1]
+        nothing = np.zeros(n_samples, np.float32)
+        taps = self._taps[node]
+        return NodeStack(
+            residual=np.array([tap.get("residual", nothing) for tap in taps]),
+            decisions=np.array([tap.get("decisions", nothing) for tap in taps]).astype(np.uint8),
+            clusters=[tap.get("range_clusters", np.zeros((0, 4), np.float32)) for tap in taps],
+            delay_s=source.first_sample_s + np.arange(n_samples) / source.sample_rate_hz,
+        )
+
+
+def _track_rows(frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
+    rows = np.zeros(len(tracks), TRACK_DTYPE)
+    rows["frame"], rows["time_us"] = frame, time_us
+    for name in TRACK_DTYPE.names or ():
+        if name not in ("frame", "time_us"):
+            rows[name] = tracks[name]
+    return rows
+
+
+def _joined(tables: Iterable[NDArray[np.void]], dtype: "np.dtype[np.void]") -> NDArray[np.void]:
+    tables = list(tables)
+    return np.concatenate(tables) if tables else np.zeros(0, dtype)
