@@ -205,7 +205,8 @@ void bind_frame_assembler(py::module_& m) {
       .def("reset", &FrameAssembler::reset)
       .def_property_readonly("counters", &FrameAssembler::counters)
       .def("receive", &receive_report<FrameAssembler>, py::arg("node_id"), py::arg("frame"),
-           py::arg("delay_s").noconvert(), py::arg("weight").noconvert(), py::arg("now_us"))
+           py::arg("delay_s").noconvert(), py::arg("weight").noconvert(), py::arg("now_us"),
+           py::arg("time_us") = 0)
       .def(
           "poll",
           [](FrameAssembler& self, std::int64_t now_us) -> py::tuple {

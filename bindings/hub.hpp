@@ -18,14 +18,14 @@ inline void fill_detections(link::Detections& report, const FloatArray& delay, c
                             " detections");
 }
 
-/// One node's report, as it comes over the link, to whatever receives reports.
+/// One node's report, as it comes over the link, to whatever receives reports. time_us: 0 when it is not known.
 template <class Receiver>
 Status receive_report(Receiver& self, std::int32_t node_id, std::uint32_t frame, const FloatArray& delay,
-                      const FloatArray& weight, std::int64_t now_us) {
+                      const FloatArray& weight, std::int64_t now_us, std::int64_t time_us) {
   link::Detections report;
   report.node_id = node_id;
   report.frame = frame;
-  report.time_us = now_us;
+  report.time_us = time_us;
   fill_detections(report, delay, weight);
   return self.receive(report, now_us);
 }

@@ -97,7 +97,9 @@ void bind_hub_pipeline(py::module_& m) {
       .def("reset", &SensorRadarHub::reset)
       .def("receive", &receive_report<SensorRadarHub>, py::arg("node_id"), py::arg("frame"),
            py::arg("delay_s").noconvert(), py::arg("weight").noconvert(), py::arg("now_us"),
-           "One node's report; frame counts the node's scans.")
+           py::arg("time_us") = 0,
+           "One node's report; frame counts the node's scans, time_us is the scan's by the node's clock (0: "
+           "not known).")
       .def("poll", &poll, py::arg("now_us"),
            "(status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of "
            "Track.")

@@ -1784,6 +1784,7 @@ class FrameAssembler:
         delay_s: numpy.typing.NDArray[numpy.float32],
         weight: numpy.typing.NDArray[numpy.float32],
         now_us: typing.SupportsInt | typing.SupportsIndex,
+        time_us: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> Status: ...
     def reset(self) -> None: ...
     @property
@@ -3082,9 +3083,10 @@ class SensorRadarHub:
         delay_s: numpy.typing.NDArray[numpy.float32],
         weight: numpy.typing.NDArray[numpy.float32],
         now_us: typing.SupportsInt | typing.SupportsIndex,
+        time_us: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> Status:
         """
-        One node's report; frame counts the node's scans.
+        One node's report; frame counts the node's scans, time_us is the scan's by the node's clock (0: not known).
         """
     def reset(self) -> None: ...
 
@@ -3288,8 +3290,8 @@ LIMITS: dict = {
     "max_newborn_particles": 1024,
     "max_assignment": 32,
 }
-MEASUREMENT_STAGES_BYTES: int = 34016
-SENSOR_RADAR_HUB_BYTES: int = 200472
+MEASUREMENT_STAGES_BYTES: int = 34640
+SENSOR_RADAR_HUB_BYTES: int = 201096
 SENSOR_RADAR_NODE_BYTES: int = 65928
 TAPS: dict = {
     0: ("scan", 0),

@@ -26,7 +26,8 @@ def accounted(log: InjectionLog, hub: dict[str, int], scans: int = 10) -> Accoun
         made={"rx1": 10},
         made_by_strangers=0,
         heard_intact=9,
-        unheard=0,
+        heard_reports=9,
+        unheard_reports=0,
     )
 
 
@@ -55,7 +56,7 @@ def test_a_counter_that_no_fault_moves(one_lost: InjectionLog) -> None:
         "hub.undecodable: 2, and no fault moves it"
     ]
     assert accounted(InjectionLog(), HUB).problems == [
-        "of 10 reports 0 ended on the way and 9 in the hub's counters",
+        "of 10 reports 0 ended on the way, 9 came to the hub and 0 while there was none",
         "hub.lost: 1, and no fault moves it",
     ]
 
@@ -69,6 +70,24 @@ def test_every_fault_that_can_be_asked_for_has_its_counters() -> None:
     asked += [f"link.{name}" for name in LinkFaults.__dataclass_fields__ if name != "late_us"]
     asked += [f"fault.{kind}" for kind in FAULT_KINDS]
     assert sorted(asked) == sorted(MAY_MOVE)
+
+
+def test_a_report_that_came_and_is_in_no_counter(one_lost: InjectionLog) -> None:
+    one_lost.add("fault.hub_restart", "", 0, Effect.RESTARTED)  # not even a restart hides it
+    found = accounted(one_lost, HUB | {"accepted": 8}).problems
+    assert "of 9 reports that came 8 are in the hub's counters" in found
+
+
+def test_a_report_that_nobody_heard_is_told_from_one_that_vanished() -> None:
+    log = InjectionLog()
+    log.add("fault.hub_restart", "", 0, Effect.RESTARTED)
+    assert "of 10 reports 0 ended on the way, 9 came" in accounted(log, HUB).problems[0]
+
+
+def test_repetitions_that_no_fault_made(one_lost: InjectionLog) -> None:
+    found = accounted(one_lost, HUB | {"accepted": 8, "link_frames": 8, "link_repeated": 1}).problems
+    assert "0 frames were doubled, and link_repeated is 1" in found
+    assert "hub.link_repeated: 1, and no fault moves it" in found
 
 
 class ForgetfulHub:

@@ -16,7 +16,10 @@ from echofuse.result import RunResult
 from echofuse.site import Site
 
 RMSE_M, RMSE_TWO_SILENT_M = 0.30, 0.45
-HUB_RESTARTS = ("hub-restart", "all")  # the hub has no track until it has confirmed one again
+#: Where there is no track for a while: until the hub has confirmed one again, or while no node reports.
+#: With all faults at once two nodes in three report then: three good frames in a row may be long in coming.
+INTERRUPTED = {"hub-restart": 0.9, "power-cut": 0.7, "all": 0.5}
+MEAN_TRACKED = {"hub-restart": 0.9, "power-cut": 0.7, "all": 0.8}
 
 
 def run(walk: Recording, site: Site, name: str, seed: int = 0, target: str = "inprocess") -> RunResult:
@@ -36,9 +39,9 @@ def problems(result: RunResult) -> list[str]:
 def check_track(result: RunResult, name: str) -> None:
     metrics = result.metrics
     assert metrics["rmse_m"] <= (RMSE_TWO_SILENT_M if name in ("silent-two", "all") else RMSE_M)
-    assert metrics["false_track_fraction"] == 0.0
-    if name in HUB_RESTARTS:
-        assert metrics["tracked_fraction"] >= 0.7
+    assert metrics["false_track_fraction"] <= (0.05 if name == "all" else 0.0)
+    if name in INTERRUPTED:
+        assert metrics["tracked_fraction"] >= INTERRUPTED[name]
     else:
         assert metrics["tracked_fraction"] >= 0.95
         assert metrics["count_right_fraction"] >= 0.95
@@ -77,6 +80,7 @@ LAWS: dict[str, Law] = {
     "silent-one": lambda n: {"lost": 10, "absent": n["fault.silent"] - 10},
     "silent-two": lambda n: {"lost": 20, "absent": n["fault.silent"] - 20},
     "restart": lambda n: {"lost": n["fault.restart"] - 2, "resynchronised": 1},
+    "power-cut": lambda n: {"lost": 60, "absent": n["fault.restart"] - 12 - 60, "resynchronised": 6},
     "hub-restart": lambda n: {},
     "garbage": lambda n: {"lost": 10, "absent": n["fault.garbage"] - 10},
     "stranger": lambda n: {"unknown_node": n["fault.stranger"]},
@@ -97,17 +101,24 @@ def test_a_fault_alone_moves_its_counters_by_exactly_so_much(walk: Recording, si
     assert rejected >= log.effects(Effect.DAMAGED)
     assert (rejected > 0) == (name in ("bit-errors", "garbage"))
     assert hub["starts"] == (2 if name == "hub-restart" else 1)
-    assert result.counters["rx4"]["starts"] == (2 if name == "restart" else 1)
+    assert result.counters["rx4"]["starts"] == (2 if name in ("restart", "power-cut") else 1)
 
 
-@pytest.mark.parametrize("name", ["too-late", "reordered", "radar"])
-def test_what_comes_out_of_step_is_missing_in_its_frame(walk: Recording, site: Site, name: str) -> None:
-    """A report that comes too late or too early counts for what came and for what was missing."""
-    result = run(walk, site, name)
+def test_a_radar_that_counts_wrong_costs_what_it_missed(walk: Recording, site: Site) -> None:
+    result = run(walk, site, "radar")
     hub, log = result.counters["hub"], log_of(result)
-    extra = log.effects(Effect.EXTRA)
+    assert 0 < log.effects(Effect.UNMADE) == hub["lost"]
+    assert 0 < log.effects(Effect.EXTRA) == hub["doubled"] + hub["late"]  # when all others are in
+    assert 0 < hub["resynchronised"] <= log.effects(Effect.UNMADE) + log.effects(Effect.EXTRA)
+    assert (hub["early"], hub["absent"]) == (0, 0)
+
+
+@pytest.mark.parametrize("name", ["too-late", "reordered"])
+def test_what_comes_out_of_step_is_missing_in_its_frame(walk: Recording, site: Site, name: str) -> None:
+    """A report that comes out of step counts for what came and for what was missing."""
+    hub = run(walk, site, name).counters["hub"]
     assert hub["frames"] == 61
-    assert hub["lost"] + hub["absent"] == hub["late"] + hub["early"] + log.effects(Effect.UNMADE) - extra
+    assert hub["lost"] + hub["absent"] == hub["late"] + hub["early"] + hub["doubled"]
     assert hub["late"] > 0
 
 
@@ -128,11 +139,52 @@ def test_one_more_fault_does_not_shift_the_others(walk: Recording, site: Site) -
     assert sorted(lost) == sorted((entry.node, entry.time_us) for entry in alone)
 
 
-def test_faults_on_the_firmware_are_those_in_this_process(walk: Recording, site: Site) -> None:
-    for name in ("lost", "all"):
-        here, there = run(walk, site, name), run(walk, site, name, target="process")
-        assert problems(there) == []
-        np.testing.assert_array_equal(there.tracks, here.tracks)
+@pytest.mark.parametrize("name", sorted(example_scenarios()))
+def test_faults_on_the_firmware_are_accounted_for_as_well(walk: Recording, site: Site, name: str) -> None:
+    result = run(walk, site, name, target="process")
+    assert problems(result) == []
+    check_track(result, name)
+    if name != "reordered":  # there a heartbeat may be what overtakes a report
+        np.testing.assert_array_equal(result.tracks, run(walk, site, name).tracks)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["all", "power-cut"])
+def test_faults_on_the_bare_machine_are_those_in_this_process(walk: Recording, site: Site, name: str) -> None:
+    here, there = run(walk, site, name), run(walk, site, name, target="cortex-m7")
+    assert problems(there) == []
+    for column in ("frame", "id", "state", "frames_since_update"):
+        np.testing.assert_array_equal(there.tracks[column], here.tracks[column])
+    for column in ("x_m", "y_m"):
+        np.testing.assert_allclose(there.tracks[column], here.tracks[column], atol=1e-3)
+
+
+#: Faults that meet. The track may be lost, but no report is in no counter.
+MEETING = {
+    "copies that come late": (
+        "[radar]\njitter_us = 5000\n"
+        "[link]\ndoubled = 0.5\nlate = 0.5\nlate_us = 100000\nbandwidth_bps = 64000\n"
+    ),
+    "two strangers of one id": '[[fault]]\nkind = "stranger"\nnode_id = 99\n' * 2,
+    "all nodes silent": "".join(
+        f'[[fault]]\nkind = "silent"\nnode = "rx{i}"\nat_s = 2.0\nuntil_s = 3.5\n' for i in range(1, 7)
+    ),
+    "the last node comes back": '[[fault]]\nkind = "silent"\nnode = "rx6"\nat_s = 1.0\nuntil_s = 3.0\n',
+    "two restarts of the hub with doubled reports": (
+        "[link]\ndoubled = 0.5\n"
+        '[[fault]]\nkind = "hub_restart"\nat_s = 2.02\n[[fault]]\nkind = "hub_restart"\nat_s = 4.0\n'
+    ),
+    "half of the reports lost": "[link]\nloss = 0.5\n",
+    "every bit in a thousand": "[link]\nbit_error_rate = 1e-3\n",
+    "a second of latency": "[link]\nlatency_us = 1000000\n",
+    "a line too slow for its reports": "[link]\nbandwidth_bps = 4000\n",
+}
+
+
+@pytest.mark.parametrize("target", ["inprocess", "process"])
+@pytest.mark.parametrize("name", sorted(MEETING))
+def test_faults_that_meet_are_accounted_for(walk: Recording, site: Site, name: str, target: str) -> None:
+    assert problems(emulate(walk, site, parse_scenario(MEETING[name]), 0, target)) == []
 
 
 def test_a_fault_that_never_came_about_is_an_error(short_walk: Recording, site: Site) -> None:
@@ -150,10 +202,16 @@ def test_a_node_that_the_site_does_not_list_is_a_stranger(short_walk: Recording,
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(example_scenarios()))
 def test_a_track_is_kept_whatever_the_seed(walk: Recording, site: Site, name: str) -> None:
-    for seed in range(1, 21):
+    seeds = range(1, 21)
+    not_applied, tracked = 0, []
+    for seed in seeds:
         try:
             result = run(walk, site, name, seed)
         except NotAppliedError:
+            not_applied += 1
             continue
         assert problems(result) == []
         check_track(result, name)
+        tracked.append(result.metrics["tracked_fraction"])
+    assert not_applied <= 1
+    assert np.mean(tracked) >= MEAN_TRACKED.get(name, 0.95)

@@ -4,9 +4,9 @@ Three laws, each exact (docs/emulation.md):
 
 1. The hub's counters of reports and of its link are those of `HubMonitor`, which heard the same bytes.
 2. Conservation. Of the frames that came intact to a running hub, each was taken or is a repetition. Of the
-   reports that nodes made, each has one fate: lost, damaged or withheld on the way (in the log), unheard
-   because there was no hub, or in one of the hub's counters of outcomes. And each node has counted as many
-   scans as it made reports.
+   reports that nodes made and a link doubled, each has one fate: lost, damaged or withheld on the way (in
+   the log), unheard because there was no hub, a repetition, or in one of the hub's counters of outcomes. And
+   each node has counted as many scans as it made reports.
 3. A counter of trouble that is not zero belongs to a kind of fault that was applied.
 """
 
@@ -21,7 +21,7 @@ __all__ = ["MAY_MOVE", "Account", "CounterRow", "FaultRow", "account"]
 
 _REJECTED = tuple(f"link_{name}" for name in REJECTED)
 _MISSING = ("lost", "absent")
-_OUT_OF_STEP = ("slow", "late", "early", "resynchronised", "clock_faults", *_MISSING)
+_OUT_OF_STEP = ("slow", "late", "early", "doubled", "resynchronised", "clock_faults", *_MISSING)
 
 #: Which of the hub's counters of trouble each kind of fault may move. Those of timing move none as long as
 #: they stay under half of the assembler's deadline.
@@ -33,8 +33,8 @@ MAY_MOVE: Mapping[str, tuple[str, ...]] = {
     "radar.drift_ppm": _OUT_OF_STEP,
     "radar.adc_bits": (),
     "radar.adc_full_scale": (),
-    "radar.missed": _OUT_OF_STEP,
-    "radar.doubled": _OUT_OF_STEP,
+    "radar.missed": ("resynchronised", *_MISSING),
+    "radar.doubled": ("resynchronised", "doubled", "late"),
     "link.latency_us": _OUT_OF_STEP,
     "link.bandwidth_bps": _OUT_OF_STEP,
     "link.loss": _MISSING,
@@ -108,13 +108,15 @@ def account(
     made: Mapping[str, int],
     made_by_strangers: int,
     heard_intact: int,
-    unheard: int,
+    heard_reports: int,
+    unheard_reports: int,
 ) -> Account:
     """Compare a run's log with its counters.
 
     expected: the hub's counters, by HubMonitor. made: reports of each node of the site.
     made_by_strangers: reports of recorded nodes that the site does not list.
-    heard_intact, unheard: intact frames that reached a running hub, or none.
+    heard_intact: intact frames that reached a running hub; heard_reports: those of them that are reports.
+    unheard_reports: intact ones that came while there was no hub.
     """
     hub = counters["hub"]
     rows = [CounterRow("hub", name, value, hub.get(name, 0)) for name, value in sorted(expected.items())]
@@ -125,11 +127,12 @@ def account(
         for row in rows
         if row.expected != row.counted
     ]
-    problems += _not_conserved(log, hub, sum(made.values()) + made_by_strangers, heard_intact, unheard)
+    problems += _not_conserved(
+        log, hub, sum(made.values()) + made_by_strangers, heard_intact, heard_reports, unheard_reports
+    )
     applied = log.applied()
     moved = [name for name in TROUBLE if hub.get(name, 0)]
-    strangers = ("unknown_node",) if made_by_strangers else ()
-    allowed = {name for kind in applied for name in MAY_MOVE[kind]} | set(strangers)
+    allowed = _may_move(applied, hub) | ({"unknown_node"} if made_by_strangers else set())
     problems += [f"hub.{name}: {hub[name]}, and no fault moves it" for name in moved if name not in allowed]
     faults = [
         FaultRow(kind, count, tuple(name for name in MAY_MOVE[kind] if name in moved))
@@ -138,23 +141,43 @@ def account(
     return Account(faults=faults, counters=rows, problems=problems)
 
 
+def _may_move(applied: Mapping[str, int], hub: Mapping[str, int]) -> set[str]:
+    """Return the counters of trouble that the faults of a run may move."""
+    allowed = {name for kind in applied for name in MAY_MOVE[kind]}
+    if hub.get("absent", 0):  # who was given up and comes back finds its frame closed without it
+        allowed.add("late")
+    return allowed
+
+
 def _not_conserved(
-    log: InjectionLog, hub: Mapping[str, int], made: int, heard_intact: int, unheard: int
+    log: InjectionLog,
+    hub: Mapping[str, int],
+    made: int,
+    heard_intact: int,
+    heard_reports: int,
+    unheard_reports: int,
 ) -> list[str]:
     """Return which sums do not come out (law 2)."""
     problems = []
-    taken = hub.get("link_frames", 0) + hub.get("link_repeated", 0)
+    repeated, outcomes = hub.get("link_repeated", 0), sum(hub.get(name, 0) for name in _OUTCOMES)
+    taken = hub.get("link_frames", 0) + repeated
     if taken != heard_intact:
         problems.append(f"of {heard_intact} intact frames that arrived the hub's link has {taken}")
-    repeated = log.effects(Effect.REPEATED)
-    if not unheard and hub.get("link_repeated", 0) != repeated:
-        problems.append(f"of {repeated} doubled frames {hub.get('link_repeated', 0)} are in link_repeated")
-    sent = made + log.effects(Effect.STRANGE)
-    on_the_way = log.effects(Effect.MISSING, Effect.DAMAGED)
-    outcomes = sum(hub.get(name, 0) for name in _OUTCOMES)
-    # Heartbeats and doubled frames may find no hub either, so this sum is exact without a hub_restart alone.
-    if not unheard and sent != on_the_way + outcomes:
+    doubled, echoed = log.effects(Effect.REPEATED), log.effects(Effect.ECHOED)
+    if repeated > doubled + echoed:
+        problems.append(f"{doubled + echoed} frames were doubled, and link_repeated is {repeated}")
+    sent = made + log.effects(Effect.STRANGE) + doubled
+    ended = log.effects(Effect.MISSING, Effect.DAMAGED)
+    if sent - ended != heard_reports + unheard_reports:
         problems.append(
-            f"of {sent} reports {on_the_way} ended on the way and {outcomes} in the hub's counters"
+            f"of {sent} reports {ended} ended on the way, {heard_reports} came to the hub and "
+            f"{unheard_reports} while there was none"
+        )
+    # A hub that was away has missed some of the doubled frames that are no reports.
+    others = outcomes + repeated - heard_reports
+    least = 0 if "fault.hub_restart" in log.applied() else echoed
+    if not least <= others <= echoed:
+        problems.append(
+            f"of {heard_reports} reports that came {outcomes + repeated - echoed} are in the hub's counters"
         )
     return problems

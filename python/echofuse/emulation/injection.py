@@ -17,7 +17,8 @@ class Effect(Enum):
     MISSING = "missing"  # a report never comes
     DAMAGED = "damaged"  # a frame comes that no reader may accept; a report in it is missing too
     GARBAGE = "garbage"  # as DAMAGED, but of bytes that never were a frame
-    REPEATED = "repeated"  # a valid frame comes twice
+    REPEATED = "repeated"  # a report comes twice
+    ECHOED = "echoed"  # another frame comes twice
     DELAYED = "delayed"  # a report comes, later than it should
     UNMADE = "unmade"  # a node gets no scan, so it makes no report
     EXTRA = "extra"  # a node gets a scan once more, and makes a report too many

@@ -68,7 +68,7 @@ class Link:
             frame = (np.frombuffer(frame, np.uint8) ^ np.packbits(flips)).tobytes()
         copies = [frame] * (2 if happens["doubled"] and intact else 1)
         if len(copies) == 2:
-            self._write("link.doubled", Effect.REPEATED)
+            self._write("link.doubled", Effect.REPEATED if report else Effect.ECHOED)
         arrivals_us = [self._arrival_us(now_us, len(copy)) for copy in copies]
         if happens["late"]:
             self._write("link.late", Effect.DELAYED if report else Effect.NOTHING, f"{faults.late_us} us")

@@ -30,10 +30,10 @@ class HubMonitor:
         self._poll(now_us)
         for transfer in self._receiver.feed(link_in, now_us):
             if transfer.port == codec.DETECTIONS and transfer.kind == codec.MESSAGE:
-                _, rows = codec.parse_detections(transfer.payload)
+                time_us, rows = codec.parse_detections(transfer.payload)
                 delay_s, weight = rows["delay_s"].astype(np.float64), rows["weight"].astype(np.float64)
                 self._assembler.receive(
-                    Report(transfer.source, transfer.transfer_id, delay_s, weight), now_us
+                    Report(transfer.source, transfer.transfer_id, delay_s, weight, time_us), now_us
                 )
                 self._poll(now_us)
 

@@ -1,5 +1,6 @@
 """Runs a recording through emulated radars, links and machines: a function of (scenario, seed, target)."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -16,7 +17,7 @@ from echofuse.emulation.radar import RadarEvent, digitised, schedule, start_us
 from echofuse.emulation.reception import Receiver
 from echofuse.emulation.scenario import Fault, Scenario
 from echofuse.emulation.scenario_file import check_nodes
-from echofuse.emulation.stations import NodeStation, Station
+from echofuse.emulation.stations import NodeStation, Station, is_report
 from echofuse.emulation.targets import open_target
 from echofuse.metrics import measure
 from echofuse.pipeline import LAST_DEADLINE_US, check_pipeline, hub_config, places_of, shown_scan
@@ -99,7 +100,9 @@ class _Run:
         config = hub_config(site)
         self._tables = RunTables(recording, config)
         self._monitor = HubMonitor(config.frame_assembler, [node.id for node in site.nodes])
-        self._heard_intact = self._unheard = 0  # frames that arrived, at a hub and while there was none
+        self._heard_intact = 0  # frames that arrived at a running hub
+        self._heard_reports = self._unheard_reports = 0  # of nodes, also while there was no hub
+        self._strange: Counter[int] = Counter()  # reports of each stranger's id
         self._from_hub = Receiver()
         self._hub = Station(target.open_hub)
         self._nodes: list[NodeStation] = []
@@ -182,7 +185,7 @@ class _Run:
         if fault.kind == "stranger":
             until_us = min(last_us, self._begin_us + fault.until_s * 1e6)
             for number in range(int(until_us - at_us) // fault.every_us + 1):
-                self._clock.at(at_us + number * fault.every_us, self._strange(fault, number))
+                self._clock.at(at_us + number * fault.every_us, lambda: self._send_strange(fault))
         elif fault.kind in ("crash", "restart", "hub_restart"):
             station = self._hub if fault.kind == "hub_restart" else self._station(fault.node)
             self._clock.at(at_us, lambda: self._switch_off(station, fault))
@@ -224,18 +227,16 @@ class _Run:
             row = Scan(time_us=event.true_time_us, node=index, index=event.index)
             self._tables.add_scan(row, _node_output(output), shown=event.index == self._shown)
 
-    def _strange(self, fault: Fault, number: int) -> Callable[[], None]:
-        """Return what sends one report of somebody the site does not list."""
-
-        def send() -> None:
-            now_us = self._clock.now_us
-            payload = codec.detections_payload(now_us, np.array([2e-8]), np.array([10]))
-            transfer = codec.Transfer(fault.node_id, codec.DETECTIONS, number, payload)
-            if self._hub.machine is not None:
-                self._log.add(fault.key, f"id {fault.node_id}", now_us, Effect.STRANGE)
-            self._deliver(codec.frame(transfer), True)
-
-        return send
+    def _send_strange(self, fault: Fault) -> None:
+        """Send one report of somebody the site does not list, if there is a hub to hear it."""
+        if self._hub.machine is None:
+            return
+        now_us = self._clock.now_us
+        payload = codec.detections_payload(now_us, np.array([2e-8]), np.array([10]))
+        number = self._strange[fault.node_id]
+        self._strange[fault.node_id] += 1
+        self._log.add(fault.key, f"id {fault.node_id}", now_us, Effect.STRANGE)
+        self._deliver(codec.frame(codec.Transfer(fault.node_id, codec.DETECTIONS, number, payload)), True)
 
     def _tick(self) -> None:
         self._step_hub(b"", self._clock.now_us)
@@ -243,10 +244,12 @@ class _Run:
             self._clock.at(self._clock.now_us + TICK_US, self._tick)
 
     def _deliver(self, data: bytes, intact: bool) -> None:
+        report = intact and is_report(data)
         if self._hub.machine is None:
-            self._unheard += intact
+            self._unheard_reports += report
             return
         self._heard_intact += intact
+        self._heard_reports += report
         self._step_hub(data, self._clock.now_us)
 
     def _step_hub(self, data: bytes, now_us: int) -> None:
@@ -277,7 +280,8 @@ class _Run:
             made=made,
             made_by_strangers=sum(node.reports_made for node in self._nodes) - sum(made.values()),
             heard_intact=self._heard_intact,
-            unheard=self._unheard,
+            heard_reports=self._heard_reports,
+            unheard_reports=self._unheard_reports,
         )
 
 

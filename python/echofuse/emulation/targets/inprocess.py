@@ -99,10 +99,11 @@ class InProcessHub:
         for transfer in self._receiver.feed(link_in, now_us):
             if transfer.port != codec.DETECTIONS or transfer.kind != codec.MESSAGE:
                 continue
-            _, rows = codec.parse_detections(transfer.payload)
+            time_us, rows = codec.parse_detections(transfer.payload)
             delay_s, weight = (np.ascontiguousarray(rows[name], np.float32) for name in ("delay_s", "weight"))
             # The hub counts what it does not take.
-            self._hub.receive(transfer.source, transfer.transfer_id & 0xFFFFFFFF, delay_s, weight, now_us)
+            frame = transfer.transfer_id & 0xFFFFFFFF
+            self._hub.receive(transfer.source, frame, delay_s, weight, now_us, time_us)
             self._close_frames(now_us, said, shown)
         return StepOutput(link_out=b"".join(said), taps=shown)
 

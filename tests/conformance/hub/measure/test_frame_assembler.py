@@ -13,14 +13,17 @@ PERIOD_US = 100_000
 
 
 def deliveries(rng, n_nodes, n_frames):  # type: ignore[no-untyped-def]
-    """(arrival_us, node_id, frame, delay_s, weight) in the order of arrival."""
+    """(arrival_us, node_id, frame, delay_s, weight, time_us) in the order of arrival."""
     found = []
+    clock_us = rng.integers(0, 10**9, size=n_nodes) * int(rng.random() < 0.8)  # or no clock
     first = rng.integers(0, 1000, size=n_nodes)
+    power_cut = rng.random() < 0.3  # of all nodes at once
     for node in range(n_nodes):
         restart = rng.integers(n_frames) if rng.random() < 0.4 else n_frames
         restart_at = int(rng.choice([0, 5000]))
+        restart = 45 if power_cut else restart
         for k in range(n_frames):
-            if rng.random() < 0.1 or (node == 0 and 20 <= k < 35):
+            if rng.random() < 0.1 or (node == 0 and 20 <= k < 35) or (power_cut and 25 <= k < 45):
                 continue
             counter = int(first[node] + k) if k < restart else int(restart_at + k - restart)
             n = int(rng.integers(0, 5))
@@ -30,8 +33,10 @@ def deliveries(rng, n_nodes, n_frames):  # type: ignore[no-untyped-def]
             arrival = k * PERIOD_US + int(rng.exponential(25_000))
             node_id = 10 + node if rng.random() > 0.02 else 99
             weight = rng.uniform(4, 20, n).astype(np.float32)
+            since_us = k * PERIOD_US if k < restart else (k - restart) * PERIOD_US
+            time_us = int(clock_us[node] + since_us) if clock_us[node] else 0
             for copy in range(1 + int(rng.random() < 0.05)):
-                found.append((arrival + 3000 * copy, node_id, counter, delay, weight))
+                found.append((arrival + 3000 * copy, node_id, counter, delay, weight, time_us))
     return sorted(found, key=lambda item: (item[0], item[1], item[2]))
 
 
@@ -49,10 +54,10 @@ def test_assembler(resync_after_reports):  # type: ignore[no-untyped-def]
         stage = _core.FrameAssembler()
         assert stage.configure(config, nodes) == _core.Status.ok
         reference = FrameAssembler(as_reference(config), [node.node_id for node in nodes])
-        for arrival, node_id, counter, delay, weight in deliveries(rng, n_nodes, 60):
-            report = Report(node_id, counter, delay.astype(np.float64), weight.astype(np.float64))
+        for arrival, node_id, counter, delay, weight, time_us in deliveries(rng, n_nodes, 60):
+            report = Report(node_id, counter, delay.astype(np.float64), weight.astype(np.float64), time_us)
             good = reference.receive(report, arrival)
-            status = stage.receive(node_id, counter, delay, weight, arrival)
+            status = stage.receive(node_id, counter, delay, weight, arrival, time_us)
             assert status == (_core.Status.ok if good else _core.Status.invalid_input)
             while True:
                 expected = reference.poll(arrival)

@@ -1,6 +1,8 @@
 #include "echofuse/hub/measure/frame_assembler.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "echofuse/core/constants.hpp"
 
@@ -33,8 +35,8 @@ void FrameAssembler::reset() {
   for (OpenFrame& frame : slots_) frame.open = false;
   head_ = 0;
   number_ = 0;
-  opened_any_ = false;
   interval_us_ = 0;
+  odd_intervals_ = 0;
   counters_ = FrameAssemblerCounters{};
 }
 
@@ -45,7 +47,7 @@ bool FrameAssembler::well_formed(const link::Detections& report) const {
     if (!(detection.weight >= 0.0f && std::isfinite(detection.weight))) return false;
     previous_s = detection.delay_s;
   }
-  return true;
+  return report.time_us >= 0 && report.time_us < (std::int64_t{1} << 56);
 }
 
 bool FrameAssembler::any_open() const {
@@ -73,58 +75,95 @@ Status FrameAssembler::receive(const link::Detections& report, std::int64_t now_
     return Status::kInvalidInput;
   }
   NodeState& node = nodes_[index];
-  if (node.aligned && report.frame == node.last_frame) {
+  if (node.heard && report.frame == node.frame) {
     ++counters_.doubled;
     return Status::kOk;
   }
-  if (!node.aligned) line_up(node, index, report.frame, now_us);
-  std::int32_t ahead = ahead_of(node, report.frame);
-  if (out_of_step(ahead, now_us)) {
-    const bool far = ahead > kFarFrames || ahead < -kFarFrames;
-    if (!far && ++node.out_of_step < config_.resync_after_reports) {
-      ++(ahead < 0 ? counters_.late : counters_.early);
-      return Status::kOk;
-    }
-    ++counters_.resynchronised;
-    line_up(node, index, report.frame, now_us);
-    ahead = ahead_of(node, report.frame);
+  place(index, report.frame, report.time_us == 0 ? now_us : report.time_us, now_us);
+  std::int32_t ahead = ahead_of(node.number);
+  if (ahead < 0) {
+    count_late(node);
+    return Status::kOk;
   }
   if (!any_open()) {  // nobody is waited for: the frames in between were lost by all
     skip(ahead);
     ahead = 0;
   }
+  if (ahead >= static_cast<std::int32_t>(kOpenFrames)) {
+    ++counters_.early;
+    return Status::kOk;
+  }
   accept(report, index, static_cast<std::size_t>(ahead), now_us);
   return Status::kOk;
 }
 
-/// Frames from the oldest one to that of a node's report; negative when it is closed.
-std::int32_t FrameAssembler::ahead_of(const NodeState& node, std::uint32_t frame) const {
-  return static_cast<std::int32_t>(frame + node.offset - number_);
+void FrameAssembler::count_late(NodeState& node) {
+  ++counters_.late;
+  if (node.live) return;
+  node.live = true;  // nobody waited for it: the next frame does, and gives up at once if it is in vain
+  node.missed = config_.dead_after_frames - 1;
 }
 
-/// Takes a node's report as one of the frame that is open, or of the next one.
-void FrameAssembler::line_up(NodeState& node, std::size_t node_index, std::uint32_t frame,
-                             std::int64_t now_us) {
-  const OpenFrame& head = slot(0);
-  const bool is_past = interval_us_ > 0 && 2 * (now_us - head.opened_us) > interval_us_;
-  const bool is_next = head.open && (head.reports[node_index].count >= 0 || is_past);
-  node.offset = number_ + (is_next ? 1U : 0U) - frame;
-  node.aligned = true;
-  node.out_of_step = 0;
-}
-
-/// Whether a report is not one of the frames that are open, and would open none that can be due.
-bool FrameAssembler::out_of_step(std::int32_t ahead, std::int64_t now_us) {
-  if (ahead < 0) return true;
-  if (ahead >= static_cast<std::int32_t>(kOpenFrames)) {
-    if (any_open()) return true;
-  } else if (slot(static_cast<std::size_t>(ahead)).open) {
-    return false;
+/// Notes a node's newest report and the frame that its scan belongs to, by its time.
+void FrameAssembler::place(std::size_t node_index, std::uint32_t frame, std::int64_t time_us,
+                           std::int64_t now_us) {
+  NodeState& node = nodes_[node_index];
+  std::int64_t lag_us = now_us - time_us;
+  if (node.heard) {
+    learn_interval(static_cast<std::int32_t>(frame - node.frame), time_us - node.time_us);
+    lag_us = std::min(lag_us, node.lag_us + (now_us - node.arrived_us) / kLagLeak);
   }
-  if (!opened_any_ || interval_us_ == 0) return false;
-  const std::int64_t steps =
-      static_cast<std::int32_t>(number_ + static_cast<std::uint32_t>(ahead) - newest_number_);
-  return steps > 0 && 2 * (now_us - newest_us_) < (2 * steps - 1) * interval_us_;
+  std::uint32_t number = due(node_index, time_us + lag_us);
+  const std::int32_t ahead = ahead_of(number);
+  if (ahead < 0 && (++node.out_of_step >= config_.resync_after_reports || ahead < -kFarFrames)) {
+    lag_us = now_us - time_us;  // its clock is another one
+    node.out_of_step = 0;
+    number = due(node_index, now_us);
+  }
+  node.heard = true;
+  node.frame = frame;
+  node.number = number;
+  node.time_us = time_us;
+  node.arrived_us = now_us;
+  node.lag_us = lag_us;
+}
+
+/// The number of the frame at a time of the hub's clock: the median of what the other nodes' newest reports say.
+std::uint32_t FrameAssembler::due(std::size_t node_index, std::int64_t scan_us) const {
+  const NodeState* newest = nullptr;
+  for (std::size_t i = 0; i < n_nodes_; ++i) {
+    const NodeState& node = nodes_[i];
+    if (node.heard && (newest == nullptr || static_cast<std::int32_t>(node.number - newest->number) > 0))
+      newest = &node;
+  }
+  if (newest == nullptr || interval_us_ == 0) return newest_open();
+
+  std::array<std::int64_t, kMaxNodes> since_us{};  // from the newest frame to the scan, ascending
+  std::size_t n = 0;
+  const auto add = [&](const NodeState& node) {
+    const std::int64_t frames = static_cast<std::int32_t>(node.number - newest->number);
+    if (!node.heard || frames < -kFarFrames) return;
+    const std::int64_t value_us = frames * interval_us_ + scan_us - (node.time_us + node.lag_us);
+    std::size_t place = n++;
+    for (; place > 0 && since_us[place - 1] > value_us; --place) since_us[place] = since_us[place - 1];
+    since_us[place] = value_us;
+  };
+  for (std::size_t i = 0; i < n_nodes_; ++i)
+    if (i != node_index) add(nodes_[i]);
+  if (n == 0) add(nodes_[node_index]);
+  const std::int64_t twice_us = 2 * since_us[(n - 1) / 2] + interval_us_;
+  std::int64_t frames = twice_us / (2 * interval_us_);
+  if (twice_us < 0 && twice_us % (2 * interval_us_) != 0) --frames;  // rounds down
+  constexpr std::int64_t kMost = 1 << 30;  // so that numbers compare across the wrap
+  return newest->number + static_cast<std::uint32_t>(std::max(-kMost, std::min(frames, kMost)));
+}
+
+/// Of the newest open frame, or of the one that is opened next.
+std::uint32_t FrameAssembler::newest_open() const {
+  std::uint32_t newest = 0;
+  for (std::size_t ahead = 0; ahead < kOpenFrames; ++ahead)
+    if (slots_[(head_ + ahead) % kOpenFrames].open) newest = static_cast<std::uint32_t>(ahead);
+  return number_ + newest;
 }
 
 /// Passes over frames of which nothing came.
@@ -134,16 +173,22 @@ void FrameAssembler::skip(std::int32_t frames) {
   number_ += static_cast<std::uint32_t>(frames);
 }
 
-void FrameAssembler::learn_interval(std::uint32_t number, std::int64_t now_us) {
-  const std::int64_t steps = static_cast<std::int32_t>(number - newest_number_);
-  if (opened_any_ && steps <= 0) return;
-  if (opened_any_) {
-    const std::int64_t step_us = (now_us - newest_us_) / steps;
-    interval_us_ = interval_us_ == 0 ? step_us : interval_us_ + (step_us - interval_us_) / 4;
+/// From two reports of one node: so the link's delays are not in it.
+void FrameAssembler::learn_interval(std::int32_t frames, std::int64_t elapsed_us) {
+  if (frames < 1 || frames > kFarFrames || elapsed_us <= 0) return;
+  const std::int64_t interval_us = elapsed_us / frames;
+  if (interval_us < kIntervalLeast_us || interval_us > kIntervalMost_us) return;
+  const std::int64_t change_us = interval_us - interval_us_;
+  if (4 * std::abs(change_us) <= interval_us_) {
+    interval_us_ += change_us / 8;
+    odd_intervals_ = 0;
+    return;
   }
-  opened_any_ = true;
-  newest_number_ = number;
-  newest_us_ = now_us;
+  // A scan missed or counted twice, a clock that is set; or all have another pace.
+  if (interval_us_ == 0 || ++odd_intervals_ >= 2 * static_cast<int>(n_nodes_)) {
+    interval_us_ = interval_us;
+    odd_intervals_ = 0;
+  }
 }
 
 void FrameAssembler::accept(const link::Detections& report, std::size_t node_index, std::size_t ahead,
@@ -153,21 +198,33 @@ void FrameAssembler::accept(const link::Detections& report, std::size_t node_ind
     frame.open = true;
     frame.opened_us = now_us;
     for (Report& kept : frame.reports) kept.count = -1;
-    learn_interval(number_ + static_cast<std::uint32_t>(ahead), now_us);
+    if (!any_live()) wait_for_all();
   }
+  NodeState& node = nodes_[node_index];
   Report& kept = frame.reports[node_index];
-  if (kept.count >= 0) {  // lined up anew onto a scan that is there already
+  if (kept.count >= 0) {  // another scan at the same time
     ++counters_.doubled;
+    ++node.out_of_step;
     return;
   }
   kept.count = static_cast<int>(report.detections.size());
   for (std::size_t i = 0; i < report.detections.size(); ++i) kept.detections[i] = report.detections[i];
-  NodeState& node = nodes_[node_index];
-  node.last_frame = report.frame;
+  const std::uint32_t offset = node.number - report.frame;
+  if (node.accepted_any && node.offset != offset) ++counters_.resynchronised;
+  node.accepted_any = true;
+  node.offset = offset;
   node.out_of_step = 0;
   node.live = true;
   ++counters_.accepted;
   if (2 * (now_us - frame.opened_us) > config_.deadline_us) ++counters_.slow;
+}
+
+/// All were away: so all may be back.
+void FrameAssembler::wait_for_all() {
+  for (std::size_t i = 0; i < n_nodes_; ++i) {
+    nodes_[i].live = true;
+    nodes_[i].missed = 0;
+  }
 }
 
 bool FrameAssembler::complete() {
