@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ledger import Ledger
 
 from echofuse.cli import main
 from echofuse.emulation import codec
@@ -53,10 +54,6 @@ def test_every_decision_is_that_of_this_process(recording: Recording, target: st
     assert {name: result.counters["hub"][name] for name in shared} == {
         name: here.counters["hub"][name] for name in shared
     }
-    for counters in result.counters.values():  # nothing was injected, so nothing was rejected
-        assert all(
-            counters[f"link_{name}"] == 0 for name in ("bad_cobs", "bad_payload_crc", "repeated", "unsent")
-        )
 
 
 @pytest.mark.slow
@@ -77,7 +74,8 @@ def test_a_run_that_is_too_slow_for_its_radar_fails(
     assert "took longer than the radar's frame period" in capsys.readouterr().out
 
 
-def test_a_node_says_what_it_is_given_and_keeps_its_own_id(node: Machine) -> None:
+def test_a_node_says_what_it_is_given_and_keeps_its_own_id(node: Machine, injected: Ledger) -> None:
+    injected("rx1", link_refused_writes=1)
     assert node.write_register("cfar.global_factor", 6.5) == 6.5
     assert node.read_register("cfar.global_factor") == 6.5
     assert node.write_register("uavcan.node.id", np.uint16(77)) == 1
@@ -92,23 +90,22 @@ def test_an_impossible_configuration_is_not_put_in_force(node: Machine) -> None:
     assert node.read_register("echofuse.apply") is False
 
 
-def test_a_scan_of_the_wrong_length_is_counted_and_the_next_is_processed(node: Machine) -> None:
+def test_a_scan_of_the_wrong_length_is_counted_and_the_next_is_processed(
+    node: Machine, injected: Ledger
+) -> None:
+    injected("rx1", rejected_scans=1, direct_path_missing=1)
     scan = np.zeros(1920, np.float32)
     _, transfers = node.step(10, scan=scan[:100])
     assert [t for t in transfers if t.port == codec.DETECTIONS] == []
     _, transfers = node.step(20, scan=scan, scan_time_us=20)
     (report,) = [t for t in transfers if t.port == codec.DETECTIONS]
     assert (report.source, report.transfer_id) == (1, 0)
-    node.step(2_000_000)
-    assert (node.health["rejected_scans"], node.health["scans"]) == (1, 1)
 
 
-def test_garbage_on_the_link_is_counted_and_what_follows_is_answered(node: Machine) -> None:
+def test_garbage_on_the_link_is_counted_and_what_follows_is_answered(node: Machine, injected: Ledger) -> None:
+    injected("rx1", link_bad_cobs=1)
     node.step(1, b"\0" + bytes(range(1, 200)) + b"\0")
     assert node.read_register("uavcan.node.id") == 1
-    node.step(2_000_000)
-    rejected = [name for name, count in node.health.items() if name.startswith("link_bad") and count]
-    assert len(rejected) == 1
 
 
 @pytest.mark.parametrize("target", FIRMWARE_TARGETS)
@@ -126,7 +123,8 @@ def test_a_hub_without_nodes_is_not_operational_until_it_has_some(target: str) -
     assert modes[-1] == 0
 
 
-def test_a_board_that_ends_is_named_with_what_was_waited_for() -> None:
+def test_a_board_that_ends_is_named_with_what_was_waited_for(injected: Ledger) -> None:
+    injected.ends_unheard("rx4")
     board = open_board("process", "node", "rx4", 4)
     os.kill(board._process.pid, signal.SIGKILL)
     with pytest.raises(BoardError, match=r"rx4 \(process\): ended with status -9 while .* step 1"):
@@ -134,7 +132,8 @@ def test_a_board_that_ends_is_named_with_what_was_waited_for() -> None:
     board.close()
 
 
-def test_a_board_that_hangs_is_named_and_what_was_heard_last() -> None:
+def test_a_board_that_hangs_is_named_and_what_was_heard_last(injected: Ledger) -> None:
+    injected.ends_unheard("rx5")
     board = open_board("process", "node", "rx5", 5)
     board._patience_s = 1.0
     os.kill(board._process.pid, signal.SIGSTOP)

@@ -15,7 +15,7 @@ from echofuse.errors import TargetError
 HUB_ID = 0xF000
 HARNESS_ID = 0xF001  # who writes the registers
 
-_CONFIG_STEP_US = 1  # the clock while a machine is configured: before everything
+CONFIG_STEP_US = 1  # the clock while a machine is configured: before everything
 
 
 class Machine:
@@ -68,7 +68,7 @@ class Machine:
                 raise TargetError(f"{self.board.name}: register {name} says {said} and not {value}")
         self.write_register("echofuse.apply", False)
         if self.write_register("echofuse.apply", True) is not True:
-            self.step(_CONFIG_STEP_US)
+            self.step(CONFIG_STEP_US)
         if self.read_register("echofuse.apply") is not True:
             raise TargetError(f"{self.board.name}: refuses the site's configuration")
 
@@ -76,7 +76,7 @@ class Machine:
         """Give a node its scans of the empty room, (n_scans, n_samples), and see that it has taken them."""
         self.write_register("echofuse.empty_room_scans_left", np.uint16(len(scans)))
         for scan in scans:
-            self.step(_CONFIG_STEP_US, scan=np.ascontiguousarray(scan, np.float32))
+            self.step(CONFIG_STEP_US, scan=np.ascontiguousarray(scan, np.float32))
         if self.read_register("echofuse.empty_room_scans_left") != 0:
             raise TargetError(f"{self.board.name}: has not taken the {len(scans)} scans of the empty room")
 
@@ -89,7 +89,7 @@ class Machine:
         service = codec.REGISTER_ACCESS
         self._requests[service] += 1
         asked = Transfer(HARNESS_ID, service, self._requests[service], request, codec.REQUEST, self.node_id)
-        _, transfers = self.step(_CONFIG_STEP_US, codec.frame(asked))
+        _, transfers = self.step(CONFIG_STEP_US, codec.frame(asked))
         for transfer in transfers:
             if transfer.kind == codec.RESPONSE and transfer.transfer_id == asked.transfer_id:
                 return codec.parse_register(transfer.payload)
@@ -121,7 +121,7 @@ class FirmwareRadar:
         self.names: dict[int, str] = {}
         self.hub = Machine(open_board("hub", "hub", HUB_ID), HUB_ID)
         self._to_nodes: dict[int, bytes] = {}
-        self._now_us = _CONFIG_STEP_US
+        self._now_us = CONFIG_STEP_US
         self._tracks: list[tuple[int, int, NDArray[np.void]]] = []
 
     def add_node(self, name: str, node_id: int, config: Any, empty_room: Sequence[NDArray[Any]]) -> None:
