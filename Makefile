@@ -6,6 +6,7 @@
 #   test       everything: C++, Python, then C++ again under the sanitizers
 #   test-fast  C++ and the quick part of Python, under three minutes
 #   fuzz       10 million inputs into each decoder of the link (a quarter of an hour); fuzz-short: half a minute each
+#   soak       100,000 frames of host processes under every fault: nothing may grow (10 minutes)
 #   bench      C++ against the NumPy reference
 #   lint       what pre-commit checks
 #   stubs      python/echofuse/_core.pyi anew from the built core
@@ -22,7 +23,7 @@ SOURCES := pyproject.toml CMakeLists.txt README.md $(shell find cpp bindings pyt
              \( -name __pycache__ -o -name '.*' \) -prune -o -type f -print)
 CXX_FILES = $(shell git ls-files '*.cpp' '*.hpp')
 
-.PHONY: demo build firmware budgets test test-fast test-cpp fuzz fuzz-short bench lint stubs clean distclean
+.PHONY: demo build firmware budgets test test-fast test-cpp fuzz fuzz-short soak bench lint stubs clean distclean
 
 demo: build
 	.venv/bin/echofuse run sensor-radar --out demo
@@ -75,6 +76,9 @@ fuzz: .venv/.setup-fuzz
 
 fuzz-short: .venv/.setup-fuzz
 	tools/fuzz -max_total_time=30 frames requests messages
+
+soak: build
+	$(PYTHON) tests/soak/soak.py
 
 bench: build
 	.venv/bin/echofuse bench
