@@ -52,9 +52,12 @@ def build_parser() -> argparse.ArgumentParser:
     import_.add_argument("--site", type=Path, help="site file with the positions (default: a known example)")
     import_.add_argument("--out", type=Path, required=True, help="the HDF5 file to write")
 
-    conform = commands.add_parser("conform", help="compare the library with its NumPy reference, tap by tap")
+    conform = commands.add_parser("conform", help="compare a target with the NumPy reference, tap by tap")
     conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CASES)} (default: all)")
-    conform.add_argument("--seeds", type=_natural, default=20, help="how many seeds (default 20)")
+    conform.add_argument(
+        "--target", choices=TARGETS, default="inprocess", help="what is compared (default inprocess)"
+    )
+    conform.add_argument("--seeds", type=_natural, help="how many seeds (default 20; on the Cortex-M7 3)")
     conform.add_argument(
         "--recording", type=Path, help="conform on this recording too (default: the real walk)"
     )

@@ -89,11 +89,15 @@ def import_(options: Namespace) -> int:
 
 
 def conform(options: Namespace) -> int:
-    """Compare the library with its reference, tap by tap."""
+    """Compare a target with the reference, tap by tap."""
     from echofuse.conformance import conform as compare
 
     passed = compare(
-        options.cases or ["sensor-radar"], seeds=options.seeds, recording=options.recording, out=options.out
+        options.cases or ["sensor-radar"],
+        target=options.target,
+        seeds=options.seeds,
+        recording=options.recording,
+        out=options.out,
     )
     return 0 if passed else 1
 

@@ -46,6 +46,9 @@ class WrongNode:
             self.spoil(answer.taps[self.tap])
         return answer
 
+    def close(self) -> None:
+        self.node.close()
+
 
 class WrongHub:
     """A hub that shows one value wrong in its fifth frame."""
@@ -64,6 +67,9 @@ class WrongHub:
                 self.spoil(answer.taps[self.tap])
         return answer
 
+    def close(self) -> None:
+        self.hub.close()
+
 
 class WrongTarget:
     """The library but for one value of one tap."""
@@ -78,6 +84,9 @@ class WrongTarget:
 
     def hub(self, config: Any) -> HubTarget:
         return WrongHub(self.right.hub(config), self.tap, self.spoil)
+
+    def close(self) -> None:
+        self.right.close()
 
 
 def add(where: Any, value: float) -> Any:

@@ -12,12 +12,13 @@ Progress = Callable[[Iterator[None], str, int], Iterator[None]]
 def conform(
     cases: Sequence[str] = CASES,
     *,
-    seeds: int = 20,
+    target: str = "inprocess",
+    seeds: int | None = None,
     recording: Path | None = None,
     out: Path | None = None,
     progress: Progress | None = None,
 ) -> bool:
-    """Compare the library with its reference and print the table; return whether all agreed.
+    """Compare a target with the reference and print the table; return whether all agreed.
 
     A tap that was never compared does not agree.
 
@@ -25,8 +26,10 @@ def conform(
     ----------
     cases
         Of `CASES`.
+    target
+        "inprocess", "process" or "cortex-m7".
     seeds
-        How many simulated inputs.
+        How many simulated inputs; by default 20, and 3 on the Cortex-M7.
     recording
         A recording to compare on as well (with its site inside); by default the real walk, where it is there.
     out
@@ -41,4 +44,4 @@ def conform(
             raise InputError(problem("conform", case, f"a case of {', '.join(CASES)}"))
     from echofuse.conformance.command import conform_sensor_radar
 
-    return conform_sensor_radar(seeds=seeds, recording=recording, out=out, progress=progress)
+    return conform_sensor_radar(target=target, seeds=seeds, recording=recording, out=out, progress=progress)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 from echofuse import recording as recordings
@@ -9,21 +10,30 @@ from echofuse.conformance.sensor_radar import Plan, Scores, real_walk, steps
 from echofuse.conformance.table import format_scores, format_tolerances, write_json
 from echofuse.conformance.target import ConformanceTarget, InProcessTarget
 from echofuse.display.progress import progress as bar
+from echofuse.emulation.targets import FIRMWARE_TARGETS
 from echofuse.errors import InputError, problem
 from echofuse.recording import Recording
+
+#: How many simulated inputs there are of each choice: an emulated processor takes longer.
+SEEDS = {"inprocess": 20, "cortex-m7": 3}
 
 Progress = Callable[[Iterator[None], str, int], Iterator[None]]
 
 
 def conform_sensor_radar(
-    *, seeds: int, recording: Path | None, out: Path | None, progress: Progress | None = None
+    *,
+    target: str,
+    seeds: int | None,
+    recording: Path | None,
+    out: Path | None,
+    progress: Progress | None = None,
 ) -> bool:
     """Compare, print and write; see `echofuse.conformance.conform`."""
-    target = InProcessTarget()
     walk, about_walk = _recording(recording)
-    plan = Plan(seeds=seeds, recording=walk)
+    seeds = SEEDS.get(target, SEEDS["inprocess"]) if seeds is None else seeds
     began_s = time.monotonic()
-    scores = _run(target, plan, progress)
+    with closing(open_target(target)) as opened:
+        scores = _run(opened, Plan(seeds=seeds, recording=walk), progress)
     took_s = time.monotonic() - began_s
     print(format_scores(scores.boards))
     print()
@@ -31,16 +41,25 @@ def conform_sensor_radar(
     print()
     verdict = "all agree with the reference" if scores.passed else "NOT all agree with the reference"
     rows = sum(len(board.rows()) for board in scores.boards.values())
-    print(
-        f"{target.name}, {seeds} seeds and {about_walk}: {rows} taps of choices, {verdict} ({took_s:.0f} s)"
-    )
+    print(f"{target}, {seeds} seeds and {about_walk}: {rows} taps of choices, {verdict} ({took_s:.0f} s)")
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-        about = {"case": "sensor-radar", "target": target.name, "seeds": seeds, "recording": about_walk}
+        about = {"case": "sensor-radar", "target": target, "seeds": seeds, "recording": about_walk}
         write_json(out / "conformance.json", scores.boards, about)
         (out / "tolerances.txt").write_text(format_tolerances() + "\n", encoding="utf-8")
         print(f"wrote {out / 'conformance.json'}")
     return scores.passed
+
+
+def open_target(name: str) -> ConformanceTarget:
+    """Return what is compared with the reference."""
+    if name == "inprocess":
+        return InProcessTarget()
+    if name not in FIRMWARE_TARGETS:
+        raise InputError(problem("--target", "", f"one of inprocess, {', '.join(FIRMWARE_TARGETS)}", name))
+    from echofuse.conformance.firmware_target import FirmwareConformanceTarget
+
+    return FirmwareConformanceTarget(name)
 
 
 def _recording(path: Path | None) -> tuple[Recording | None, str]:

@@ -74,6 +74,8 @@ def _listen(board: Scoreboard, target: ConformanceTarget, frames: int) -> Iterat
             got.append(_report(places[which].node_id, index, answer.detections, np.float32))
             expected.append(_report(places[which].node_id, index, report.detections, np.float64))
         yield FrameReports(got, expected, margin)
+    for node in nodes:
+        node.close()
 
 
 def _name(tracker: str) -> str:
@@ -110,6 +112,7 @@ def _track(board: Scoreboard, target: ConformanceTarget, tracker: str, reports: 
             return
         margin = min(margin, frame.margin, *step.margins.values())
         _compare_tracks(board, choice.name, where, to_float64(answer.taps["tracks"]), step, margin)
+    hub.close()
 
 
 def _compare_tracks(

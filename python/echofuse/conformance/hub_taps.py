@@ -7,6 +7,7 @@ manager keep a state of their own.
 """
 
 from collections.abc import Sequence
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -49,11 +50,12 @@ def conform_hub(
     ]
     for number, heard in enumerate(fitting):
         config = heard.config(choice)
-        comparison = HubComparison(board, choice, config, target.hub(config))
-        for index, instant in enumerate(heard.instants):
-            comparison.selects = choice.selects(number, index)
-            if not comparison.feed(instant, f"{heard.where}, frame {index} of it"):
-                break
+        with closing(target.hub(config)) as hub:
+            comparison = HubComparison(board, choice, config, hub)
+            for index, instant in enumerate(heard.instants):
+                comparison.selects = choice.selects(number, index)
+                if not comparison.feed(instant, f"{heard.where}, frame {index} of it"):
+                    break
 
 
 class HubComparison:

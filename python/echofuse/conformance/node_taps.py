@@ -6,6 +6,7 @@ shift or a direct path that was one, the rest of the input is not.
 """
 
 from collections.abc import Sequence
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -44,21 +45,22 @@ def conform_node(
     for heard in inputs:
         config = heard.config(choice)
         plain = as_reference(config)
-        node, reference = target.node(config), SensorRadarNode(plain)
-        for scan in heard.empty_room if heard.has_empty_room(choice) else ():
-            node.set_empty_room(scan)
-            reference.set_empty_room(to_float64(scan))
-        for index, scan in enumerate(heard.scans_of(choice)):
-            answer = node.process(scan, index * SCAN_PERIOD_US)
-            report = reference.process(to_float64(scan))
-            where = f"{heard.where}, scan {index} of it"
-            if (answer is None) != (report is None):
-                board.row(choice.name, "scan").failures.append(f"{where}: complete for one side only")
-                break
-            if answer is None or report is None:
-                continue
-            if not _Scan(board, choice.name, where, plain).compare(answer, report):
-                break
+        with closing(target.node(config)) as node:
+            reference = SensorRadarNode(plain)
+            for scan in heard.empty_room if heard.has_empty_room(choice) else ():
+                node.set_empty_room(scan)
+                reference.set_empty_room(to_float64(scan))
+            for index, scan in enumerate(heard.scans_of(choice)):
+                answer = node.process(scan, index * SCAN_PERIOD_US)
+                report = reference.process(to_float64(scan))
+                where = f"{heard.where}, scan {index} of it"
+                if (answer is None) != (report is None):
+                    board.row(choice.name, "scan").failures.append(f"{where}: complete for one side only")
+                    break
+                if answer is None or report is None:
+                    continue
+                if not _Scan(board, choice.name, where, plain).compare(answer, report):
+                    break
 
 
 class _Scan:

@@ -29,6 +29,9 @@ class NodeTarget(Protocol):
     def process(self, scan: Scan, time_us: int) -> NodeAnswer | None:
         """Take scan (n_samples,) [count]; an answer when it completes the pulses of a scan."""
 
+    def close(self) -> None:
+        """Give it back."""
+
 
 @dataclass(frozen=True)
 class Report:
@@ -59,6 +62,9 @@ class HubTarget(Protocol):
     def poll(self, now_us: int) -> HubAnswer | None:
         """Work on the oldest frame that is closed by now, if there is one."""
 
+    def close(self) -> None:
+        """Give it back."""
+
 
 class ConformanceTarget(Protocol):
     """A machine that runs the pipeline."""
@@ -70,6 +76,9 @@ class ConformanceTarget(Protocol):
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """Return a hub configured and forgetful."""
+
+    def close(self) -> None:
+        """End all machines."""
 
 
 class InProcessNode:
@@ -90,6 +99,9 @@ class InProcessNode:
         if not self._node.report_ready():
             return None
         return NodeAnswer(_columns(detections, "delay_s", "weight"), taps)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
 
 class InProcessHub:
@@ -113,6 +125,9 @@ class InProcessHub:
         time_us, frame, tracks = closed
         return HubAnswer(time_us, frame, tracks, taps)
 
+    def close(self) -> None:
+        """Nothing is held."""
+
 
 class InProcessTarget:
     """The library in this process."""
@@ -126,6 +141,9 @@ class InProcessTarget:
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""
         return InProcessHub(config)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
 
 def _expect(status: Any, what: str, *others: Any) -> None:

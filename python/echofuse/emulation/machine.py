@@ -1,13 +1,24 @@
 """What the emulation needs of a machine, whatever it runs on: bytes in, bytes out, one step at a time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Machine", "ScanInput", "StepOutput", "Target"]
+from echofuse import _core
+
+__all__ = ["Machine", "ScanInput", "StepOutput", "Target", "named_taps"]
+
+
+def named_taps(taps: Iterable[tuple[int, NDArray[np.float32]]]) -> list[tuple[str, NDArray[np.float32]]]:
+    """Return taps (TapId, values) by their names, a row an item where there are columns (core/tap.hpp)."""
+    named = []
+    for tap, values in taps:
+        name, columns = _core.TAPS[tap]
+        named.append((name, values.reshape(-1, columns) if columns else values))
+    return named
 
 
 class ScanInput(NamedTuple):

@@ -6,7 +6,7 @@ from echofuse import _core
 from echofuse.emulation.firmware import HUB_ID
 from echofuse.emulation.firmware import Machine as BoardMachine
 from echofuse.emulation.lockstep import PROFILE_TOTAL
-from echofuse.emulation.machine import Machine, ScanInput, StepOutput
+from echofuse.emulation.machine import Machine, ScanInput, StepOutput, named_taps
 from echofuse.emulation.targets.boards import open_board
 from echofuse.pipeline import hub_config, node_config, places_of
 from echofuse.recording import NodeRecording
@@ -72,13 +72,12 @@ class FirmwareMachine:
             scan_time_us=0 if scan is None else scan.time_us,
             taps=taps,
         )
-        shown = []
-        for tap, values in done.taps:
-            name, columns = _core.TAPS[tap]
-            shown.append((name, values.reshape(-1, columns) if columns else values))
         profile = {_core.TAPS[tap][0]: ticks for tap, ticks in done.profile.items() if tap != PROFILE_TOTAL}
         return StepOutput(
-            link_out=done.link, taps=shown, profile=profile, total_ticks=done.profile.get(PROFILE_TOTAL)
+            link_out=done.link,
+            taps=named_taps(done.taps),
+            profile=profile,
+            total_ticks=done.profile.get(PROFILE_TOTAL),
         )
 
     def counters(self, now_us: int) -> dict[str, int]:
