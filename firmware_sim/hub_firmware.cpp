@@ -19,6 +19,7 @@ namespace {
 
 constexpr link::RegisterField kCommandRegisters[] = {
     ECHOFUSE_REGISTER_AS(Commands, apply, "echofuse.apply"),
+    ECHOFUSE_REGISTER_AS(Commands, taps, "echofuse.taps"),
 };
 
 constexpr std::size_t kFrameBytes = link::kFrameHeaderBytes + link::kFrameCrcBytes + kMaxPayloadBytes;
@@ -69,7 +70,7 @@ class HubFirmware {
 
   void close_frames(std::int64_t now_us) {
     for (bool closed = applied_; closed;) {
-      hub_.set_tap_sink(profiler_.sink());
+      hub_.set_tap_sink(profiler_.sink(commands_));
       profiler_.begin();
       (void)hub_.poll(now_us, tracks_, closed);  // kTruncated: what was cut it counts
       if (!closed) return;

@@ -13,9 +13,10 @@
 /// What the super-loops of node and hub share: the link's bytes in and out, taps and the profile of the stages.
 namespace echofuse::firmware {
 
-/// A register of the loop itself: `apply` = true puts the staged configuration in force, and reads back as whether it is.
+/// Registers of the loop itself: `apply` = true puts the staged configuration in force, and reads back as whether it is.
 struct Commands {
   bool apply = false;
+  bool taps = false;                        ///< send what each stage shows, where there is no debug port
   std::uint16_t empty_room_scans_left = 0;  ///< the next scans are of the empty room (nodes)
 };
 
@@ -48,9 +49,9 @@ class Profiler {
   explicit Profiler(link::Endpoint& endpoint) : endpoint_(endpoint) {}
 
   /// The sink for a pipeline's next call.
-  TapSink sink() {
+  TapSink sink(const Commands& commands) {
     n_marks_ = 0;
-    return board::taps_wanted() ? TapSink(&show, this) : TapSink::marks(&mark, this);
+    return board::taps_wanted() || commands.taps ? TapSink(&show, this) : TapSink::marks(&mark, this);
   }
 
   void begin() { began_ = last_ = board::ticks(); }

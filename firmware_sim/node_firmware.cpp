@@ -19,6 +19,7 @@ namespace {
 
 constexpr link::RegisterField kCommandRegisters[] = {
     ECHOFUSE_REGISTER_AS(Commands, apply, "echofuse.apply"),
+    ECHOFUSE_REGISTER_AS(Commands, taps, "echofuse.taps"),
     ECHOFUSE_REGISTER_AS(Commands, empty_room_scans_left, "echofuse.empty_room_scans_left"),
 };
 
@@ -87,7 +88,7 @@ class NodeFirmware {
       (void)node_.set_empty_room(scan);  // a scan that it cannot use is counted
       return;
     }
-    node_.set_tap_sink(profiler_.sink());
+    node_.set_tap_sink(profiler_.sink(commands_));
     profiler_.begin();
     const Status status = node_.process(scan, time_us, report_);
     profiler_.end();

@@ -11,6 +11,7 @@ from echofuse.errors import InputError, TargetError
 
 CASES = ("sensor-radar",)
 TARGETS = ("inprocess", "process", "cortex-m7")
+TARGET = "TARGET"
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -44,7 +45,7 @@ def build_parser() -> argparse.ArgumentParser:
     verify = commands.add_parser("verify", help="replay a recording and prove that the same bytes come out")
     verify.add_argument("recording", type=Path)
     verify.add_argument(
-        "--target", choices=TARGETS, default="inprocess", help="replay there (default inprocess)"
+        "--target", type=_target, metavar=TARGET, default="inprocess", help="replay there (default inprocess)"
     )
 
     import_ = commands.add_parser("import", help="turn other people's recordings into ours")
@@ -55,7 +56,7 @@ def build_parser() -> argparse.ArgumentParser:
     conform = commands.add_parser("conform", help="compare a target with the NumPy reference, tap by tap")
     conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CASES)} (default: all)")
     conform.add_argument(
-        "--target", choices=TARGETS, default="inprocess", help="what is compared (default inprocess)"
+        "--target", type=_target, metavar=TARGET, default="inprocess", help="what is compared"
     )
     conform.add_argument("--seeds", type=_natural, help="how many seeds (default 20; on the Cortex-M7 3)")
     conform.add_argument(
@@ -103,9 +104,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _add_target(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--target",
-        choices=TARGETS,
+        type=_target,
+        metavar=TARGET,
         default="inprocess",
-        help="in this process (default), as host processes, or on bare Cortex-M7 images in QEMU",
+        help="in this process (default), as host processes, on bare Cortex-M7 images in QEMU, or a node of "
+        "your own at tcp://HOST:PORT or serial:DEVICE[@BAUD] (several with commas; the others as processes)",
     )
     parser.add_argument(
         "--clock-mhz",
@@ -119,6 +122,20 @@ def _add_target(parser: argparse.ArgumentParser) -> None:
         default=1.0,
         help="what an instruction takes there: instructions are counted, cycles stated (default 1)",
     )
+
+
+def _target(text: str) -> str:
+    if text in TARGETS:
+        return text
+    from echofuse.emulation.targets import port_url
+
+    try:
+        for address in text.split(","):
+            port_url(address)
+    except InputError:
+        expected = f"{', '.join(TARGETS)}, tcp://HOST:PORT or serial:DEVICE[@BAUD]"
+        raise argparse.ArgumentTypeError(f"expected {expected}, got {text}") from None
+    return text
 
 
 def _positive(text: str) -> float:

@@ -10,7 +10,7 @@ from echofuse.conformance.sensor_radar import Plan, Scores, real_walk, steps
 from echofuse.conformance.table import format_scores, format_tolerances, write_json
 from echofuse.conformance.target import ConformanceTarget, InProcessTarget
 from echofuse.display.progress import progress as bar
-from echofuse.emulation.targets import FIRMWARE_TARGETS
+from echofuse.emulation.targets import FIRMWARE_TARGETS, is_port
 from echofuse.errors import InputError, problem
 from echofuse.recording import Recording
 
@@ -55,7 +55,7 @@ def open_target(name: str) -> ConformanceTarget:
     """Return what is compared with the reference."""
     if name == "inprocess":
         return InProcessTarget()
-    if name not in FIRMWARE_TARGETS:
+    if name not in FIRMWARE_TARGETS and not is_port(name):
         raise InputError(problem("--target", "", f"one of inprocess, {', '.join(FIRMWARE_TARGETS)}", name))
     from echofuse.conformance.firmware_target import FirmwareConformanceTarget
 

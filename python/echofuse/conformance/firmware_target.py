@@ -10,9 +10,8 @@ from echofuse.conformance.target import HubAnswer, HubTarget, NodeAnswer, NodeTa
 from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID, Machine
 from echofuse.emulation.machine import named_taps
-from echofuse.emulation.targets import open_board
+from echofuse.emulation.targets import BoardOpener
 
-NODE_ID = 1
 PAUSE_US = 10_000_000  # between two inputs, longer than any link remembers a transfer
 
 
@@ -21,6 +20,7 @@ class FirmwareConformanceTarget:
 
     def __init__(self, name: str) -> None:
         self.name = name
+        self._open_board = BoardOpener(name)
         self._free: dict[str, list[FirmwareUnderTest]] = {"node": [], "hub": []}
 
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
@@ -40,10 +40,11 @@ class FirmwareConformanceTarget:
         for machines in self._free.values():
             while machines:
                 machines.pop().machine.board.close()
+        self._open_board.close()
 
     def _machine(self, role: str, config: Any) -> "FirmwareUnderTest":
         free = self._free[role]
-        machine = free.pop() if free else FirmwareUnderTest(self.name, role)
+        machine = free.pop() if free else FirmwareUnderTest(self._open_board, role)
         machine.configure(config)
         return machine
 
@@ -51,10 +52,10 @@ class FirmwareConformanceTarget:
 class FirmwareUnderTest:
     """A board, and how far its clock is ahead of an input's."""
 
-    def __init__(self, target: str, role: str) -> None:
-        node_id = NODE_ID if role == "node" else HUB_ID
+    def __init__(self, open_board: BoardOpener, role: str) -> None:
+        node_id = open_board.free_id() if role == "node" else HUB_ID
         self.role = role
-        self.machine = Machine(open_board(target, role, role, node_id), node_id)
+        self.machine = Machine(open_board(role, role, node_id), node_id)
         self._begin_us = self._now_us = 0
 
     def configure(self, config: Any) -> None:

@@ -279,6 +279,11 @@ def register_read(name: str) -> bytes:
     return bytes([len(encoded)]) + encoded + b"\0"
 
 
+def parse_name(payload: bytes) -> str:
+    """Return what a machine calls itself in a response of uavcan.node.GetInfo."""
+    return payload[31 : 31 + payload[30]].decode(errors="replace")
+
+
 def parse_register(payload: bytes) -> object:
     """Return the first element of the value in a response of register.Access; None when it is empty."""
     tag, data = payload[8], payload[9:]

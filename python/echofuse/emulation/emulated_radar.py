@@ -16,7 +16,7 @@ from echofuse.emulation import codec
 from echofuse.emulation.deadline import Processor
 from echofuse.emulation.firmware import FirmwareRadar
 from echofuse.emulation.image_size import image_size
-from echofuse.emulation.targets import firmware_image, open_board
+from echofuse.emulation.targets import BoardOpener, firmware_image
 from echofuse.pipeline import SensorRadar, node_config
 from echofuse.recording import NodeRecording
 from echofuse.run_tables import FrameOutput, NodeOutput, Scan
@@ -73,7 +73,8 @@ class EmulatedRadar:
         self.agreement = Agreement()
         self._frames_here: deque[FrameOutput] = deque()
         self._frames_there: deque[tuple[int, NDArray[np.void]]] = deque()
-        self._there = FirmwareRadar(lambda role, name, node_id: open_board(target, role, name, node_id))
+        self._open_board = BoardOpener(target)
+        self._there = FirmwareRadar(self._open_board)
         try:
             self._there.hub.configure(self.hub_config)
             places = {place.id: place for place in site.nodes}
@@ -82,8 +83,9 @@ class EmulatedRadar:
                     config = node_config(site, places[source.node_id], source)
                     empty_room = [] if source.reference is None else list(source.reference)
                     self._there.add_node(source.name, source.node_id, config, empty_room)
+            self._open_board.check_all_taken(site.name)
         except BaseException:
-            self._there.close()
+            self.__exit__()
             raise
 
     def __enter__(self) -> Self:
@@ -91,6 +93,7 @@ class EmulatedRadar:
 
     def __exit__(self, *_: object) -> None:
         self._there.close()
+        self._open_board.close()
 
     def scan(self, scan: Scan, samples: NDArray[Any], *, taps: bool = False) -> NodeOutput:
         """Give both nodes their next scan; the firmware's detections, the process's taps."""
@@ -128,7 +131,7 @@ class EmulatedRadar:
 
     def counters(self) -> dict[str, dict[str, int]]:
         """Return what the machines say that they have counted, by name; the firmware's."""
-        return self._there.counters()
+        return self._there.counters() | self._open_board.rejected
 
     def metrics(self, processor: Processor) -> dict[str, float]:
         """Return what the run cost on the target, and how far it agrees with the process."""

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from echofuse.emulation import codec
 from echofuse.emulation.codec import FrameReader, Transfer
-from echofuse.emulation.lockstep import PROFILE_TOTAL, Board, StepOutput
+from echofuse.emulation.lockstep import PROFILE_TOTAL, StepOutput
+from echofuse.emulation.targets.boards import AnyBoard
 from echofuse.errors import TargetError
 
 HUB_ID = 0xF000
@@ -22,7 +23,7 @@ CONFIG_STEP_US = 1  # the clock while a machine is configured: before everything
 class Machine:
     """One board, what it says on the link, and what it counts."""
 
-    def __init__(self, board: Board, node_id: int) -> None:
+    def __init__(self, board: AnyBoard, node_id: int) -> None:
         self.board = board
         self.node_id = node_id
         self.health: dict[str, int] = {}
@@ -45,6 +46,13 @@ class Machine:
     ) -> tuple[StepOutput, list[Transfer]]:
         """Let the board work at one moment; what it did, and the transfers that it put on the link."""
         output = self.board.step(now_us, link, scan=scan, scan_time_us=scan_time_us, taps=taps)
+        return output, self._heard(output)
+
+    def ask_health(self, now_us: int) -> list[Transfer]:
+        """Let the board say what it has counted, at this moment or later; all that it says then."""
+        return self._heard(self.board.ask_health(now_us))
+
+    def _heard(self, output: StepOutput) -> list[Transfer]:
         transfers = list(self._reader.feed(output.link))
         for transfer in transfers:
             if transfer.port == codec.NODE_HEALTH and transfer.kind == codec.MESSAGE:
@@ -52,7 +60,7 @@ class Machine:
         if output.profile:
             self.profiles.append(output.profile)
             self.stack_bytes = output.stack_bytes or 0
-        return output, transfers
+        return transfers
 
     def write_register(self, name: str, value: object) -> object:
         """Write a register over the link; what it says then."""
@@ -118,7 +126,7 @@ def _differences(value: Any, default: Any, where: str = "") -> Iterator[tuple[st
 class FirmwareRadar:
     """A site's nodes and hub on boards, fed scan by scan. A link without faults joins them in no time."""
 
-    def __init__(self, open_board: Callable[[str, str, int], Board]) -> None:
+    def __init__(self, open_board: Callable[[str, str, int], AnyBoard]) -> None:
         """open_board: starts the firmware of a role ("node", "hub") by a name and a node id."""
         self._open_board = open_board
         self.nodes: dict[int, Machine] = {}
@@ -164,12 +172,12 @@ class FirmwareRadar:
         return taken
 
     def counters(self) -> dict[str, dict[str, int]]:
-        """Let every machine say what it has counted, at a later moment; by machine and name."""
-        self._now_us += 1_100_000
-        self.hub.step(self._now_us)
+        """Let every machine say what it has counted; by machine and name."""
+        self.hub.ask_health(self._now_us)
         for node_id, machine in self.nodes.items():
             machine.step(self._now_us, self._to_nodes[node_id])
             self._to_nodes[node_id] = b""
+            machine.ask_health(self._now_us)
         return {"hub": self.hub.health} | {
             self.names[node_id]: machine.health for node_id, machine in self.nodes.items()
         }

@@ -33,6 +33,7 @@ STEP_STOP, STEP_TAPS = 1, 2
 TRACE_DONE, TRACE_TAP, TRACE_PROFILE, TRACE_FAULT, TRACE_STACK = range(5)
 PROFILE_TOTAL = 255
 
+HEALTH_AFTER_US = 1_100_000  # a machine tells what it has counted once a second
 PATIENCE_S = 30.0  # a step of the slowest board takes less than one second
 
 
@@ -124,6 +125,10 @@ class Board:
         output = StepOutput()
         self._collect(output, purpose)
         return output
+
+    def ask_health(self, now_us: int) -> StepOutput:
+        """Let the board work until it says what it has counted, once a second of its clock."""
+        return self.step(now_us + HEALTH_AFTER_US)
 
     def close(self) -> None:
         """Switch the board off and wait for its end."""

@@ -3,12 +3,22 @@
 from collections.abc import Callable, Sequence
 
 from echofuse.emulation.machine import Target
-from echofuse.emulation.targets.boards import FIRMWARE_TARGETS, firmware_image, open_board
+from echofuse.emulation.targets.boards import FIRMWARE_TARGETS, BoardOpener, firmware_image, open_board
+from echofuse.emulation.targets.port import is_port, port_url
 from echofuse.errors import InputError, problem
 from echofuse.recording import NodeRecording
 from echofuse.site import Site
 
-__all__ = ["FIRMWARE_TARGETS", "TARGETS", "firmware_image", "open_board", "open_target"]
+__all__ = [
+    "FIRMWARE_TARGETS",
+    "TARGETS",
+    "BoardOpener",
+    "firmware_image",
+    "is_port",
+    "open_board",
+    "open_target",
+    "port_url",
+]
 
 Opener = Callable[[str, Site, Sequence[NodeRecording]], Target]
 
@@ -26,7 +36,10 @@ def _firmware(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target
 
 
 #: By name, or by what a name begins with ("tcp:").
-TARGETS: dict[str, Opener] = {"inprocess": _inprocess, **dict.fromkeys(FIRMWARE_TARGETS, _firmware)}
+TARGETS: dict[str, Opener] = {
+    "inprocess": _inprocess,
+    **dict.fromkeys((*FIRMWARE_TARGETS, "tcp:", "serial:"), _firmware),
+}
 
 
 def open_target(name: str, site: Site, sources: Sequence[NodeRecording]) -> Target:

@@ -1,4 +1,4 @@
-"""Where firmware runs: as a host process, or on a bare Cortex-M7 in QEMU."""
+"""Where firmware runs: as a host process, on a bare Cortex-M7 in QEMU, or on a user's own board."""
 
 import os
 import shutil
@@ -6,8 +6,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from echofuse.emulation.lockstep import Board, Places
+from echofuse.emulation.targets.port import PortBoard, is_port
 from echofuse.errors import TargetError, problem
 
+AnyBoard = Board | PortBoard
 FIRMWARE_TARGETS = ("process", "cortex-m7")
 _SUFFIX = {"process": "", "cortex-m7": ".elf"}
 
@@ -21,6 +23,57 @@ def firmware_image(target: str, role: str) -> Path:
         hint = "make firmware" if target == "cortex-m7" else "make build"
         raise TargetError(problem(image, "", f"a firmware image for the target {target} (`{hint}` makes it)"))
     return image
+
+
+class BoardOpener:
+    """Starts the boards of a target: of its kind, or at its addresses, with host processes for all others."""
+
+    def __init__(self, target: str) -> None:
+        """target: one of FIRMWARE_TARGETS, or addresses of boards with commas between them."""
+        self.target = target
+        self._kind = "process" if is_port(target) else target
+        self._waiting: dict[int, PortBoard] = {}  # by node id
+        self._taken: dict[int, PortBoard] = {}
+        try:
+            for address in target.split(",") if is_port(target) else ():
+                board = PortBoard(address)
+                other = self._waiting.setdefault(board.node_id, board)
+                if other is not board:
+                    board.close()
+                    raise TargetError(f"{address}: node {board.node_id}, as at {other.address}")
+        except BaseException:
+            self.close()
+            raise
+
+    def __call__(self, role: str, name: str, node_id: int) -> AnyBoard:
+        """Start the firmware of a role ("node", "hub") by a name and a node id."""
+        if node_id in self._taken:
+            address = self._taken[node_id].address
+            raise TargetError(f"{address}: the board there cannot be switched off and on from here")
+        if role == "node" and node_id in self._waiting:
+            board = self._taken[node_id] = self._waiting.pop(node_id)
+            board.name = f"{name} ({board.address})"
+            return board
+        return open_board(self._kind, role, name, node_id)
+
+    def free_id(self) -> int:
+        """Return the id of a node that answers at an address and is not in use yet, or else one of nobody."""
+        return next(iter(self._waiting), max(self._taken, default=0) + 1)
+
+    def check_all_taken(self, site: str) -> None:
+        """Raise when a board answers at an address and is no node of the site."""
+        for node_id, board in self._waiting.items():
+            raise TargetError(f"{board.address}: node {node_id} answers there, which {site} does not list")
+
+    @property
+    def rejected(self) -> dict[str, dict[str, int]]:
+        """What came over the lines and was no frame, by address and reason."""
+        return {board.address: board.rejected for board in self._taken.values()}
+
+    def close(self) -> None:
+        """Leave the lines that nobody took."""
+        while self._waiting:
+            self._waiting.popitem()[1].close()
 
 
 def open_board(target: str, role: str, name: str, node_id: int) -> Board:

@@ -7,12 +7,10 @@ from echofuse.emulation.firmware import HUB_ID
 from echofuse.emulation.firmware import Machine as BoardMachine
 from echofuse.emulation.lockstep import PROFILE_TOTAL
 from echofuse.emulation.machine import Machine, ScanInput, StepOutput, named_taps
-from echofuse.emulation.targets.boards import open_board
+from echofuse.emulation.targets.boards import BoardOpener
 from echofuse.pipeline import hub_config, node_config, places_of
 from echofuse.recording import NodeRecording
 from echofuse.site import Site
-
-COUNTERS_AFTER_US = 1_100_000  # a machine tells what it has counted once a second
 
 
 class FirmwareTarget:
@@ -22,6 +20,7 @@ class FirmwareTarget:
         self.name = name
         self._site, self._sources = site, tuple(sources)
         self._places = places_of(site, sources)
+        self._open_board = BoardOpener(name)
 
     def open_node(self, index: int) -> Machine:
         """Start a node, write its configuration, and show it the empty room."""
@@ -31,7 +30,7 @@ class FirmwareTarget:
             from echofuse.emulation.targets.inprocess import InProcessNode
 
             return InProcessNode(source.node_id, None)
-        machine = BoardMachine(open_board(self.name, "node", source.name, source.node_id), source.node_id)
+        machine = BoardMachine(self._open_board("node", source.name, source.node_id), source.node_id)
         try:
             machine.configure(node_config(self._site, place, source))
             machine.show_empty_room([] if source.reference is None else list(source.reference))
@@ -42,7 +41,7 @@ class FirmwareTarget:
 
     def open_hub(self) -> Machine:
         """Start the hub and write its configuration."""
-        machine = BoardMachine(open_board(self.name, "hub", "hub", HUB_ID), HUB_ID)
+        machine = BoardMachine(self._open_board("hub", "hub", HUB_ID), HUB_ID)
         try:
             machine.configure(hub_config(self._site))
         except BaseException:
@@ -51,7 +50,8 @@ class FirmwareTarget:
         return FirmwareMachine(machine)
 
     def close(self) -> None:
-        """Nothing is held beside the machines."""
+        """Leave the lines that no machine took."""
+        self._open_board.close()
 
 
 class FirmwareMachine:
@@ -82,7 +82,7 @@ class FirmwareMachine:
 
     def counters(self, now_us: int) -> dict[str, int]:
         """Return what the firmware says that it has counted, when it next says so."""
-        self._machine.step(now_us + COUNTERS_AFTER_US)
+        self._machine.ask_health(now_us)
         counted = dict(self._machine.health)
         for name in ("ticks_max", "link_stack_bytes"):  # no counters
             counted.pop(name, None)
