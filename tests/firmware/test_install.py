@@ -135,6 +135,20 @@ def test_no_public_header_includes_a_generated_message(installed: Path) -> None:
             assert "/" not in included or included.startswith(("echofuse/", "Eigen/")), header
 
 
+@pytest.mark.slow
+def test_the_tree_itself_can_be_part_of_a_build(project: Path) -> None:
+    lists = project / "CMakeLists.txt"
+    package = "find_package(echofuse 0.1 REQUIRED COMPONENTS node link)"
+    assert package in lists.read_text()
+    lists.write_text(lists.read_text().replace(package, f"add_subdirectory({ROOT} echofuse)"))
+    build = project / "build"
+    cmake("-S", project, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-G", "Ninja")
+    cmake("--build", build, "--target", "my_node")
+    assert subprocess.run([build / "my_node"], stdin=subprocess.DEVNULL, check=False).returncode == 0
+    cmake("--install", build, "--prefix", project / "installed")
+    assert not (project / "installed").exists()
+
+
 @pytest.mark.parametrize(
     ("change", "prefix", "options", "said"),
     [
