@@ -135,6 +135,24 @@ def test_no_public_header_includes_a_generated_message(installed: Path) -> None:
             assert "/" not in included or included.startswith(("echofuse/", "Eigen/")), header
 
 
+def test_a_toolchain_that_names_no_processor_gets_the_libraries_own(installed: Path, project: Path) -> None:
+    toolchain = project / "plain.cmake"
+    toolchain.write_text("""
+      set(CMAKE_SYSTEM_NAME Generic)
+      set(CMAKE_CXX_COMPILER arm-none-eabi-g++)
+      set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)""")
+    prefix = f"-DCMAKE_PREFIX_PATH={installed / 'cortex-m7'}"
+    cmake("-S", project, "-B", project / "build", prefix, "--toolchain", toolchain, "-G", "Ninja")
+    cmake("--build", project / "build")
+    image = project / "build" / "my_node.elf"
+    attributes = subprocess.run(
+        ["arm-none-eabi-readelf", "-A", image], check=True, capture_output=True, text=True
+    ).stdout
+    assert 'Tag_CPU_name: "7E-M"' in attributes
+    assert "Tag_ABI_VFP_args: VFP registers" in attributes
+    assert heap_symbols(image) == []
+
+
 @pytest.mark.slow
 def test_the_tree_itself_can_be_part_of_a_build(project: Path) -> None:
     lists = project / "CMakeLists.txt"
@@ -197,16 +215,8 @@ def test_the_limits_of_the_libraries_are_those_of_who_links_them(tmp_path: Path,
     small = tmp_path / "small limits.hpp"
     small.write_text("#pragma once\n#include <cstddef>\n" + re.sub(r"\b1920\b", "960", constants))
     build, prefix = tmp_path / "build", tmp_path / "installed"
-    cmake(
-        "-S",
-        ROOT,
-        "-B",
-        build,
-        f"-DECHOFUSE_LIMITS_HEADER={small}",
-        "-DCMAKE_BUILD_TYPE=Debug",
-        "-G",
-        "Ninja",
-    )
+    options = [f"-DECHOFUSE_LIMITS_HEADER={small}", "-DCMAKE_BUILD_TYPE=Debug", "-G", "Ninja"]
+    cmake("-S", ROOT, "-B", build, *options)
     cmake("--build", build)
     cmake("--install", build, "--prefix", prefix)
     small.unlink()
