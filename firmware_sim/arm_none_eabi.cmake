@@ -1,5 +1,5 @@
 # Toolchain file of the bare-metal presets: Debian's gcc-arm-none-eabi with newlib. ECHOFUSE_CPU and ECHOFUSE_FPU come
-# from the preset. No -fpic, no unwind tables, and a section for every function, so that the linker drops what an image does
+# from the preset, and of an installed echofuse from two lines above this one. No -fpic, no unwind tables, and a section for every function, so that the linker drops what an image does
 # not call. The whole newlib and not its nano variant, whose memcpy moves one byte at a time.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)

@@ -27,40 +27,27 @@ constexpr std::int64_t kSynchronizationPeriod_us = 1000000;
 
 class HubFirmware {
  public:
-  HubFirmware() : endpoint_(frame_, &board::send, "echofuse.sensor_radar.hub"), profiler_(endpoint_) {}
+  static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarHub;
+
+  Machine& machine() { return machine_; }
 
   void start() {
-    endpoint_.start(board::node_id(), board::now_us());
 #ifdef ECHOFUSE_SITE_CONFIG
     staged_ = site::hub_config();
 #endif
-    ECHOFUSE_CHECK(endpoint_.registers().add({hub::config_registers(), &staged_}));
-    ECHOFUSE_CHECK(endpoint_.registers().add({kCommandRegisters, &commands_}));
-    apply();
+    machine_.add_registers(hub::config_registers(), &staged_);
+    machine_.add_registers(kCommandRegisters, &machine_.commands);
   }
 
-  void turn() {
-    const std::int64_t now_us = board::now_us();
-    // Frames that are overdue close before what has just come is looked at.
-    close_frames(now_us);
-    take_link(endpoint_, now_us, [this](std::int64_t now) { take_message(now); });
-    if (commands_.apply != applied_) apply();
-    synchronize(now_us);
-    if (endpoint_.heartbeat(now_us, health(),
-                            applied_ ? link::Mode::kOperational : link::Mode::kInitialization))
-      send_health();
-  }
+  bool configure() { return hub_.configure(staged_) == Status::kOk; }
 
- private:
-  /// Puts the staged configuration in force if it is possible; the earlier one stays otherwise.
-  void apply() {
-    applied_ = hub_.configure(staged_) == Status::kOk;
-    commands_.apply = applied_;
-  }
+  /// Frames that are overdue close before what has just come is looked at.
+  void before_link(std::int64_t now_us) { close_frames(now_us); }
 
   void take_message(std::int64_t now_us) {
-    if (!applied_ || endpoint_.header().port_id != endpoint_.ports().detections) return;
-    if (link::decode(endpoint_.header(), endpoint_.payload(), report_) != Status::kOk) {
+    if (!machine_.applied || machine_.endpoint.header().port_id != machine_.endpoint.ports().detections)
+      return;
+    if (link::decode(machine_.endpoint.header(), machine_.endpoint.payload(), report_) != Status::kOk) {
       ++undecodable_;
       return;
     }
@@ -68,15 +55,43 @@ class HubFirmware {
     close_frames(now_us);
   }
 
+  void after_link(std::int64_t now_us) { synchronize(now_us); }
+
+  bool healthy() const { return hub_.counters().reports.malformed == 0; }
+
+  std::array<std::uint32_t, 19> counters() const {
+    const hub::SensorRadarHubCounters c = hub_.counters();
+    return {c.reports.accepted,
+            c.reports.late,
+            c.reports.early,
+            c.reports.doubled,
+            c.reports.malformed,
+            c.reports.unknown_node,
+            c.reports.lost,
+            c.reports.resynchronised,
+            c.reports.frames,
+            c.reports.absent,
+            c.reports.slow,
+            static_cast<std::uint32_t>(c.selection.tuples),
+            static_cast<std::uint32_t>(c.selection.dropped_tuples),
+            static_cast<std::uint32_t>(c.selection.dropped_detections),
+            static_cast<std::uint32_t>(c.selection.dropped_measurements),
+            static_cast<std::uint32_t>(c.dropped_points),
+            c.dropped_births,
+            c.clock_faults,
+            undecodable_};
+  }
+
+ private:
   void close_frames(std::int64_t now_us) {
-    for (bool closed = applied_; closed;) {
-      hub_.set_tap_sink(profiler_.sink(commands_));
-      profiler_.begin();
+    for (bool closed = machine_.applied; closed;) {
+      hub_.set_tap_sink(machine_.profiler.sink(machine_.commands));
+      machine_.profiler.begin();
       (void)hub_.poll(now_us, tracks_, closed);  // kTruncated: what was cut it counts
       if (!closed) return;
-      profiler_.end();
-      endpoint_.publish(endpoint_.ports().tracks, tracks_.frame,
-                        link::encode(tracks_, endpoint_.payload_buffer()));
+      machine_.profiler.end();
+      machine_.endpoint.publish(machine_.endpoint.ports().tracks, tracks_.frame,
+                                link::encode(tracks_, machine_.endpoint.payload_buffer()));
     }
   }
 
@@ -86,69 +101,24 @@ class HubFirmware {
     const auto previous =
         synchronizations_ == 0 ? std::uint64_t{0} : static_cast<std::uint64_t>(synchronized_us_);
     synchronized_us_ = now_us;
-    endpoint_.publish(link::kTimeSubject, synchronizations_++,
-                      link::encode_synchronization(previous, endpoint_.payload_buffer()));
-  }
-
-  link::Health health() const {
-    return hub_.counters().reports.malformed > 0 ? link::Health::kAdvisory : link::Health::kNominal;
-  }
-
-  void send_health() {
-    const hub::SensorRadarHubCounters c = hub_.counters();
-    link::NodeHealth health;
-    health.kind = link::MachineKind::kSensorRadarHub;
-    for (const std::uint32_t value : {c.reports.accepted,
-                                      c.reports.late,
-                                      c.reports.early,
-                                      c.reports.doubled,
-                                      c.reports.malformed,
-                                      c.reports.unknown_node,
-                                      c.reports.lost,
-                                      c.reports.resynchronised,
-                                      c.reports.frames,
-                                      c.reports.absent,
-                                      c.reports.slow,
-                                      static_cast<std::uint32_t>(c.selection.tuples),
-                                      static_cast<std::uint32_t>(c.selection.dropped_tuples),
-                                      static_cast<std::uint32_t>(c.selection.dropped_detections),
-                                      static_cast<std::uint32_t>(c.selection.dropped_measurements),
-                                      static_cast<std::uint32_t>(c.dropped_points),
-                                      c.dropped_births,
-                                      c.clock_faults,
-                                      undecodable_,
-                                      profiler_.most_ticks()})
-      add(health, value);
-    add_link(health, endpoint_);
-    endpoint_.publish(endpoint_.ports().node_health, health_messages_++,
-                      link::encode(health, endpoint_.payload_buffer()));
+    machine_.endpoint.publish(link::kTimeSubject, synchronizations_++,
+                              link::encode_synchronization(previous, machine_.endpoint.payload_buffer()));
   }
 
   std::array<std::uint8_t, kFrameBytes> frame_{};
-  link::Endpoint endpoint_;
-  Profiler profiler_;
+  Machine machine_{frame_, "echofuse.sensor_radar.hub"};
   hub::SensorRadarHubConfig staged_;
-  Commands commands_;
-  bool applied_ = false;
   hub::SensorRadarHub hub_;
   link::Detections report_;
   link::Tracks tracks_;
   std::int64_t synchronized_us_ = 0;
   std::uint64_t synchronizations_ = 0;
-  std::uint64_t health_messages_ = 0;
   std::uint32_t undecodable_ = 0;
 };
 
-HubFirmware machine;
+HubFirmware firmware;
 
 }  // namespace
 }  // namespace echofuse::firmware
 
-int main(int argc, char** argv) {
-  echofuse::board::start(argc, argv);
-  echofuse::firmware::machine.start();
-  for (;;) {
-    echofuse::board::wait();
-    echofuse::firmware::machine.turn();
-  }
-}
+int main(int argc, char** argv) { echofuse::firmware::run(echofuse::firmware::firmware, argc, argv); }

@@ -30,52 +30,60 @@ constexpr std::size_t kFrameBytes =
 
 class NodeFirmware {
  public:
-  NodeFirmware() : endpoint_(frame_, &board::send, "echofuse.sensor_radar.node"), profiler_(endpoint_) {}
+  static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarNode;
+
+  Machine& machine() { return machine_; }
 
   void start() {
-    endpoint_.start(board::node_id(), board::now_us());
 #ifdef ECHOFUSE_SITE_CONFIG
     (void)site::node_config(board::node_id(), staged_);
 #endif
-    ECHOFUSE_CHECK(endpoint_.registers().add({node::config_registers(), &staged_}));
-    ECHOFUSE_CHECK(endpoint_.registers().add({kCommandRegisters, &commands_}));
-    apply();
+    machine_.add_registers(node::config_registers(), &staged_);
+    machine_.add_registers(kCommandRegisters, &machine_.commands);
   }
 
-  void turn() {
-    const std::int64_t now_us = board::now_us();
-    take_link(endpoint_, now_us, [this](std::int64_t now) { take_message(now); });
-    if (commands_.apply != applied_) apply();
-    std::int64_t scan_time_us = 0;
-    const std::size_t n_samples = board::read_scan(scan_, scan_time_us);
-    if (n_samples > 0) take_scan(n_samples, scan_time_us);
-    if (endpoint_.heartbeat(now_us, health(),
-                            applied_ ? link::Mode::kOperational : link::Mode::kInitialization))
-      send_health();
-  }
-
- private:
-  /// Puts the staged configuration in force if it is possible; the earlier one stays otherwise.
-  void apply() {
+  bool configure() {
     staged_.node_id = board::node_id();
-    applied_ = node_.configure(staged_) == Status::kOk;
-    commands_.apply = applied_;
+    return node_.configure(staged_) == Status::kOk;
   }
+
+  void before_link(std::int64_t /*now_us*/) {}
 
   void take_message(std::int64_t now_us) {
-    const link::TransferHeader& header = endpoint_.header();
+    const link::TransferHeader& header = machine_.endpoint.header();
     if (header.port_id == link::kTimeSubject) take_time(now_us);
-    if (header.port_id != endpoint_.ports().raw_scan || header.destination != link::kBroadcast) return;
+    if (header.port_id != machine_.endpoint.ports().raw_scan || header.destination != link::kBroadcast)
+      return;
     std::int64_t time_us = 0;
     std::size_t n_samples = 0;
-    if (link::decode_raw_scan(endpoint_.payload(), time_us, scan_, n_samples) == Status::kOk)
+    if (link::decode_raw_scan(machine_.endpoint.payload(), time_us, scan_, n_samples) == Status::kOk)
       take_scan(n_samples, time_us);
   }
 
+  void after_link(std::int64_t /*now_us*/) {
+    std::int64_t scan_time_us = 0;
+    const std::size_t n_samples = board::read_scan(scan_, scan_time_us);
+    if (n_samples > 0) take_scan(n_samples, scan_time_us);
+  }
+
+  bool healthy() const { return node_.counters().rejected_scans == 0; }
+
+  std::array<std::uint32_t, 7> counters() const {
+    const node::SensorRadarNodeCounters& c = node_.counters();
+    return {c.scans,
+            c.rejected_scans,
+            c.learning_scans,
+            c.direct_path_missing,
+            c.alignment_doubts,
+            c.undetectable_scans,
+            c.truncated_detections};
+  }
+
+ private:
   /// The hub's clock minus this one, by the message before, whose sending this one tells.
   void take_time(std::int64_t now_us) {
     std::uint64_t previous_us = 0;
-    if (link::decode_synchronization(endpoint_.payload(), previous_us) != Status::kOk) return;
+    if (link::decode_synchronization(machine_.endpoint.payload(), previous_us) != Status::kOk) return;
     if (previous_us != 0 && synchronization_us_ != 0)
       hub_clock_ahead_us_ = static_cast<std::int64_t>(previous_us) - synchronization_us_;
     synchronization_us_ = now_us;
@@ -83,61 +91,34 @@ class NodeFirmware {
 
   void take_scan(std::size_t n_samples, std::int64_t time_us) {
     const Span<const float> scan{scan_.data(), std::min(n_samples, scan_.size())};
-    if (commands_.empty_room_scans_left > 0) {
-      --commands_.empty_room_scans_left;
+    if (machine_.commands.empty_room_scans_left > 0) {
+      --machine_.commands.empty_room_scans_left;
       (void)node_.set_empty_room(scan);  // a scan that it cannot use is counted
       return;
     }
-    node_.set_tap_sink(profiler_.sink(commands_));
-    profiler_.begin();
+    node_.set_tap_sink(machine_.profiler.sink(machine_.commands));
+    machine_.profiler.begin();
     const Status status = node_.process(scan, time_us, report_);
-    profiler_.end();
+    machine_.profiler.end();
     if (status == Status::kInvalidInput || !node_.report_ready()) return;
-    const link::TransferHeader header = link::header_of(report_, endpoint_.ports().detections);
-    endpoint_.publish(header.port_id, header.transfer_id, link::encode(report_, endpoint_.payload_buffer()));
-  }
-
-  link::Health health() const {
-    return node_.counters().rejected_scans > 0 ? link::Health::kAdvisory : link::Health::kNominal;
-  }
-
-  void send_health() {
-    const node::SensorRadarNodeCounters& c = node_.counters();
-    link::NodeHealth health;
-    health.kind = link::MachineKind::kSensorRadarNode;
-    for (const std::uint32_t value :
-         {c.scans, c.rejected_scans, c.learning_scans, c.direct_path_missing, c.alignment_doubts,
-          c.undetectable_scans, c.truncated_detections, profiler_.most_ticks()})
-      add(health, value);
-    add_link(health, endpoint_);
-    endpoint_.publish(endpoint_.ports().node_health, health_messages_++,
-                      link::encode(health, endpoint_.payload_buffer()));
+    const link::TransferHeader header = link::header_of(report_, machine_.endpoint.ports().detections);
+    machine_.endpoint.publish(header.port_id, header.transfer_id,
+                              link::encode(report_, machine_.endpoint.payload_buffer()));
   }
 
   std::array<std::uint8_t, kFrameBytes> frame_{};
   std::array<float, kMaxSamplesPerScan> scan_{};
-  link::Endpoint endpoint_;
-  Profiler profiler_;
+  Machine machine_{frame_, "echofuse.sensor_radar.node"};
   node::SensorRadarNodeConfig staged_;
-  Commands commands_;
-  bool applied_ = false;
   node::SensorRadarNode node_;
   link::Detections report_;
   std::int64_t synchronization_us_ = 0;
   std::int64_t hub_clock_ahead_us_ = 0;
-  std::uint64_t health_messages_ = 0;
 };
 
-NodeFirmware machine;
+NodeFirmware firmware;
 
 }  // namespace
 }  // namespace echofuse::firmware
 
-int main(int argc, char** argv) {
-  echofuse::board::start(argc, argv);
-  echofuse::firmware::machine.start();
-  for (;;) {
-    echofuse::board::wait();
-    echofuse::firmware::machine.turn();
-  }
-}
+int main(int argc, char** argv) { echofuse::firmware::run(echofuse::firmware::firmware, argc, argv); }

@@ -1,4 +1,4 @@
-"""Measures the images of build/cortex-m7.
+"""Measures the images of the target cortex-m7, as `make firmware` leaves them.
 
 python tests/firmware/measure.py            the figures, as README's table
 python tests/firmware/measure.py --update   and into budgets.toml
@@ -6,25 +6,22 @@ python tests/firmware/measure.py --update   and into budgets.toml
 
 import argparse
 import re
-import struct
 import subprocess
 import sys
-import tempfile
 import tomllib
-from collections import defaultdict
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from board import PROFILE, STACK, TAP, TOTAL, Board
-from material import PERIOD_US, Feed, case_study, crowd
+from material import PERIOD_US, HubFeed, crowd, hub_of_the_case_study, node_of_the_case_study
 from static_stack import deepest, functions
 
+from echofuse.emulation.firmware import HUB_ID, Machine
 from echofuse.emulation.image_size import image_size
+from echofuse.emulation.lockstep import PROFILE_TOTAL
+from echofuse.emulation.targets import firmware_image, open_board
 
 HERE = Path(__file__).parent
-BUILD = HERE.parents[1] / "build" / "cortex-m7"
 BUDGETS = HERE / "budgets.toml"
 TOLERANCE = 0.03  # in both directions
 FORBIDDEN = {"malloc", "free", "calloc", "realloc", "_malloc_r", "_free_r", "_sbrk"}
@@ -34,41 +31,36 @@ FORBIDDEN_OPERATORS = ("_Znw", "_Zna", "_Zdl", "_Zda")  # new and delete
 Figures = dict[str, int]
 
 
-@dataclass
-class Run:
-    """What an image did with a feed."""
-
-    totals: list[int]  # instructions of each step
-    stages: dict[int, list[int]]  # the same by the tap that ends a stage
-    answers: list[bytes]  # the last tap of each step
-    stack_bytes: int  # deepest use, painted
-
-
 def limits() -> dict[str, Any]:
     """Return limits.toml."""
     return tomllib.loads((HERE / "limits.toml").read_text())
 
 
-def run(image: Path, feed: Feed, *, marks: bool = False) -> Run:
-    """Feed an image, step by step."""
-    result = Run([], defaultdict(list), [], 0)
-    with tempfile.TemporaryDirectory() as folder, Board(image, Path(folder)) as board:
-        board.step(feed.settings)
-        for scan in feed.empty_room:
-            board.step(scan, time_us=-1)
-        for index, values in enumerate(feed.steps):
-            for kind, identity, payload in board.step(values, time_us=(index + 1) * PERIOD_US, marks=marks):
-                if kind == PROFILE and identity == TOTAL:
-                    result.totals.append(struct.unpack("<I", payload)[0])
-                elif kind == PROFILE:
-                    result.stages[identity].append(struct.unpack("<I", payload)[0])
-                elif kind == STACK:
-                    result.stack_bytes = struct.unpack("<I", payload)[0]
-                elif kind == TAP:
-                    result.answers.append(payload)
-        if status := board.stop():
-            raise RuntimeError(f"{image.name} ended with {status}")
-    return result
+def run_node() -> Machine:
+    """Let a node process its scans of the case study; the machine, with its profile of each scan."""
+    config, source = node_of_the_case_study()
+    with open_board("cortex-m7", "node", source.name, source.node_id) as board:
+        node = Machine(board, source.node_id)
+        node.configure(config)
+        node.show_empty_room([] if source.reference is None else list(source.reference))
+        for index, samples in enumerate(source.scans):
+            time_us = (index + 1) * PERIOD_US
+            node.step(time_us, scan=np.ascontiguousarray(samples, np.float32), scan_time_us=time_us)
+    if len(node.profiles) != len(source.scans):
+        raise RuntimeError(f"{len(node.profiles)} of {len(source.scans)} scans were processed")
+    return node
+
+
+def run_hub(feed: HubFeed) -> Machine:
+    """Let a hub process the reports of each frame; the machine, with its profile of each frame."""
+    with open_board("cortex-m7", "hub", "hub", HUB_ID) as board:
+        hub = Machine(board, HUB_ID)
+        hub.configure(feed.config)
+        for index, reports in enumerate(feed.frames):
+            hub.step((index + 1) * PERIOD_US, reports)
+    if len(hub.profiles) != len(feed.frames):
+        raise RuntimeError(f"{len(hub.profiles)} of {len(feed.frames)} frames were closed")
+    return hub
 
 
 def stage_names() -> dict[int, str]:
@@ -78,29 +70,28 @@ def stage_names() -> dict[int, str]:
     return {int(number): re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name, number in found}
 
 
-def measure(entry: dict[str, Any]) -> Figures:
-    """Return all figures of one image of limits.toml."""
-    image = BUILD / entry["file"]
+def measure(role: str) -> Figures:
+    """Return all figures of the image of a role: "node" or "hub"."""
+    image = firmware_image("cortex-m7", role)
     size = image_size(image)
-    found = functions(image)
-    pointers = limits()["calls_through_pointers"]
+    machine = run_node() if role == "node" else run_hub(hub_of_the_case_study())
+    totals = [profile[PROFILE_TOTAL] for profile in machine.profiles]
     figures = {
         "flash_bytes": size.flash_bytes,
         "ram_bytes": size.ram_bytes,
-        "stack_bytes": deepest(found, "main", pointers).n_bytes,
+        "stack_bytes": deepest(functions(image), "main", limits()["calls_through_pointers"]).n_bytes,
+        "stack_painted_bytes": machine.stack_bytes,
+        "instructions_mean": round(np.mean(totals)),
+        "instructions_max": max(totals),
     }
-    feeds = {"node": lambda: case_study()[0][0], "hub": lambda: case_study()[1]}
-    if entry.get("feed"):
-        feed = feeds[entry["feed"]]()
-        plain, marked = run(image, feed), run(image, feed, marks=True)
-        figures["stack_painted_bytes"] = plain.stack_bytes
-        figures["instructions_mean"] = round(np.mean(plain.totals))
-        figures["instructions_max"] = max(plain.totals)
-        names = stage_names()
-        for tap, counts in marked.stages.items():
-            figures[f"instructions_of_{names[tap]}"] = round(np.mean(counts))
-    if entry.get("feed") == "hub":
-        figures["instructions_worst_case"] = max(run(image, crowd(16, 16)).totals)
+    names = stage_names()
+    stages = dict.fromkeys(tap for profile in machine.profiles for tap in profile if tap != PROFILE_TOTAL)
+    for tap in stages:  # in the order in which they run
+        counts = [profile[tap] for profile in machine.profiles if tap in profile]
+        figures[f"instructions_of_{names[tap]}"] = round(np.mean(counts))
+    if role == "hub":
+        worst = run_hub(crowd(16, 16))
+        figures["instructions_worst_case"] = max(profile[PROFILE_TOTAL] for profile in worst.profiles)
     return figures
 
 
@@ -118,9 +109,9 @@ def main() -> int:
     options = parser.parse_args()
     lines = ["# Written by `make budgets`. A measured figure may differ by 3 %, up or down."]
     for entry in limits()["image"]:
-        figures = measure(entry)
-        lines += ["", f"[{entry['name']}]", *(f"{name} = {value}" for name, value in figures.items())]
-        print(f"\n| {entry['name']} | asked | measured |\n|---|---|---|")
+        figures = measure(entry["role"])
+        lines += ["", f"[{entry['role']}]", *(f"{name} = {value}" for name, value in figures.items())]
+        print(f"\n| {entry['role']} | asked | measured |\n|---|---|---|")
         for name, value in figures.items():
             asked = entry["at_most"].get(name)
             print(f"| {name.replace('_', ' ')} | {'' if asked is None else f'<= {asked:,}'} | {value:,} |")

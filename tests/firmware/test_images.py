@@ -1,6 +1,7 @@
-"""The bare-metal images: no heap, inside their budgets, and the same answers as in this process.
+"""The bare-metal images: no heap, inside their budgets, and faults that are told.
 
-They are built by `make firmware`; an image, a compiler or an emulator that is missing is an error.
+What they answer is tests/hil's. They are built by `make firmware`; an image, a compiler or an emulator
+that is missing is an error.
 """
 
 import os
@@ -10,23 +11,26 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from board import Board
-from material import TRACK_LAYOUT, case_study
-from measure import BUDGETS, BUILD, TOLERANCE, heap_symbols, limits, measure, run
+from measure import BUDGETS, TOLERANCE, heap_symbols, limits, measure, run_node
 from static_stack import Function, compilers_frames, deepest, functions, plain_name
 
 from echofuse.emulation.image_size import image_size
+from echofuse.emulation.lockstep import BoardError
+from echofuse.emulation.targets import firmware_image, open_board
 from echofuse.errors import InputError
 
 IMAGES: list[dict[str, Any]] = limits()["image"]
-FED = [entry for entry in IMAGES if "feed" in entry]
+BUILD = Path(__file__).parents[2] / "build" / "cortex-m7"
 COMPILER = ["arm-none-eabi-g++", "-mcpu=cortex-m7", "-mthumb", "-O2", "-ffunction-sections", "-nostartfiles"]
 
 
+def image_of(entry: dict[str, Any]) -> Path:
+    return firmware_image("cortex-m7", entry["role"])
+
+
 def names(entry: dict[str, Any]) -> str:
-    return entry["name"]
+    return entry["role"]
 
 
 def compiled(folder: Path, source: str) -> Path:
@@ -48,7 +52,7 @@ def compiled(folder: Path, source: str) -> Path:
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_no_image_has_a_heap_or_exceptions(entry: dict[str, Any]) -> None:
-    assert heap_symbols(BUILD / entry["file"]) == []
+    assert heap_symbols(image_of(entry)) == []
 
 
 def test_a_heap_would_be_seen(tmp_path: Path) -> None:
@@ -58,8 +62,8 @@ def test_a_heap_would_be_seen(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
-    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
-    measured = measure(entry)
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["role"]]
+    measured = measure(entry["role"])
     too_much = {name: measured[name] for name, most in entry["at_most"].items() if measured[name] > most}
     assert too_much == {}
     off = {
@@ -70,20 +74,20 @@ def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
     assert off == {}, "budget and measured figure; `make budgets` records what is meant"
 
 
-@pytest.mark.parametrize("entry", FED, ids=names)
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_the_stack_in_use_is_inside_the_stack_that_the_calls_add_up_to(entry: dict[str, Any]) -> None:
-    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["role"]]
     assert (
         budgets["stack_painted_bytes"] <= budgets["stack_bytes"] + 64
     )  # painted from 64 bytes below its top
-    assert budgets["stack_bytes"] <= image_size(BUILD / entry["file"]).stack_bytes
+    assert budgets["stack_bytes"] <= image_size(image_of(entry)).stack_bytes
 
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
     """By name, without arguments; a name with more than one frame (overloads) must have one of them."""
     known = compilers_frames(BUILD)
-    found = functions(BUILD / entry["file"])
+    found = functions(image_of(entry))
     plain = subprocess.run(
         ["arm-none-eabi-c++filt", *found], check=True, capture_output=True, text=True
     ).stdout
@@ -97,51 +101,26 @@ def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
     assert compared > 50
 
 
-def test_a_scan_costs_the_same_in_every_run() -> None:
-    node = case_study()[0][0]
-    image = BUILD / "tests/firmware/images/node_pipeline.elf"
-    assert run(image, node).totals == run(image, node).totals
-
-
-@pytest.mark.parametrize("which", range(6))
-def test_the_bare_node_sees_what_this_process_sees(which: int) -> None:
-    """To the last bit: single precision is the same everywhere, and no decision hangs on the C library."""
-    node = case_study()[0][which]
-    answers = run(BUILD / "tests/firmware/images/node_pipeline.elf", node).answers
-    assert len(answers) == 61
-    assert answers == node.expected
-
-
-def test_the_bare_hub_tracks_what_this_process_tracks() -> None:
-    hub = case_study()[1]
-    answers = run(BUILD / "tests/firmware/images/hub_pipeline.elf", hub).answers
-    assert len(answers) == 61
-    assert max(map(len, answers)) > 0
-    for theirs, ours in zip(answers, hub.expected, strict=True):
-        assert np.frombuffer(theirs, TRACK_LAYOUT).tolist() == np.frombuffer(ours, TRACK_LAYOUT).tolist()
-
-
-def test_a_board_out_of_step_says_so_and_stops(tmp_path: Path) -> None:
-    with Board(BUILD / "tests/firmware/images/node_pipeline.elf", tmp_path) as board:
+def test_a_board_out_of_step_says_so_and_stops() -> None:
+    with open_board("cortex-m7", "node", "rx1", 1) as board:
         os.write(board._front_end, b"x" * 40)
-        with pytest.raises(RuntimeError, match=r"front-end out of step \(.*board.cpp:\d+\)"):
-            board._wait()
+        with pytest.raises(
+            BoardError, match=r"fault in step 1 .*: front-end out of step \(.*board.cpp:\d+\)"
+        ):
+            board.step(1)
 
 
-def test_growing_out_of_the_stack_is_a_fault(tmp_path: Path) -> None:
+def test_growing_out_of_the_stack_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The node's image with less stack than it needs."""
-    image = BUILD / "tests/firmware/images/node_pipeline.elf"
-    data = bytearray(image.read_bytes())
+    data = bytearray(firmware_image("cortex-m7", "node").read_bytes())
     stack_top = struct.unpack_from("<I", data, text_offset(data))[0]
-    struct.pack_into("<I", data, text_offset(data), 0x20000000 + 512)
+    struct.pack_into("<I", data, text_offset(data), 0x20000000 + 1024)
     assert stack_top == 0x20000000 + 4096
-    small = tmp_path / "small.elf"
-    small.write_bytes(data)
-    node = case_study()[0][0]
-    with Board(small, tmp_path) as board:
-        board.step(node.settings)
-        with pytest.raises(RuntimeError, match="stack overflow"):
-            board.step(node.steps[0], time_us=1)
+    (tmp_path / "cortex-m7").mkdir()
+    (tmp_path / "cortex-m7" / "sensor_radar_node.elf").write_bytes(data)
+    monkeypatch.setenv("ECHOFUSE_FIRMWARE", str(tmp_path))
+    with pytest.raises(BoardError, match=r"rx1 .*: fault in step .*: stack overflow"):
+        run_node()
 
 
 def text_offset(data: bytes) -> int:
@@ -158,7 +137,7 @@ def test_image_size_refuses_what_is_no_image(tmp_path: Path) -> None:
 
 
 def test_image_size_is_that_of_the_linker() -> None:
-    image = BUILD / IMAGES[0]["file"]
+    image = firmware_image("cortex-m7", "node")
     rows = subprocess.run(["arm-none-eabi-size", image], check=True, capture_output=True, text=True).stdout
     text, data, bss = map(int, rows.splitlines()[1].split()[:3])
     size = image_size(image)

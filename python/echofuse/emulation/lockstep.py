@@ -172,6 +172,10 @@ class Board:
                 self._read_trace(TRACE.size, purpose, output)
             )
             payload = self._read_trace(n_bytes, purpose, output)
+            if magic == TRACE_MAGIC and kind == TRACE_FAULT:  # whatever step the board believes to be in
+                raise BoardError(
+                    f"{self.name}: fault in {purpose}: {payload.decode(errors='replace').strip()}"
+                )
             if magic != TRACE_MAGIC or sequence != self._sequence:
                 raise BoardError(f"{self.name}: trace out of step in {purpose}: it says step {sequence}")
             self._heard = f"trace {kind}/{id_} of step {sequence}"
@@ -181,8 +185,6 @@ class Board:
                 output.profile[id_] = int.from_bytes(payload, "little")
             elif kind == TRACE_STACK:
                 output.stack_bytes = int.from_bytes(payload, "little")
-            elif kind == TRACE_FAULT:
-                raise BoardError(f"{self.name}: fault in {purpose}: {payload.decode(errors='replace')}")
             elif kind == TRACE_DONE:
                 break
         sent, received = DONE.unpack(payload)
