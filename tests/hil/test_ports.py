@@ -156,12 +156,15 @@ def test_every_decision_is_that_of_this_process(walk: Recording, place: Place) -
 
 @pytest.mark.slow
 def test_a_bare_cortex_m7_behind_its_uart(walk: Recording) -> None:
-    """Without a front-end, nobody steps it: scans, registers and reports go through the UART."""
+    """Without a front-end, nobody steps it: scans, registers and reports go through the UART.
+
+    Its clock is the host's here: counted by instructions, a second between two heartbeats may take any time.
+    """
     few = replace(walk, nodes=tuple(replace(n, scans=n.scans[:6], time_s=n.time_s[:6]) for n in walk.nodes))
     with socket.create_server(("127.0.0.1", 0)) as free:
         number = free.getsockname()[1]
     command = ["qemu-system-arm", "-M", "mps2-an500", "-display", "none", "-monitor", "none"]
-    command += ["-icount", "shift=0", "-semihosting-config", "enable=on,target=native"]
+    command += ["-semihosting-config", "enable=on,target=native"]
     command += ["-kernel", str(firmware_image("cortex-m7", "node")), "-append", f"--node-id {NODE_ID}"]
     command += ["-serial", f"tcp:127.0.0.1:{number},server=on,wait=off"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL) as emulator:
@@ -170,7 +173,7 @@ def test_a_bare_cortex_m7_behind_its_uart(walk: Recording) -> None:
         finally:
             emulator.kill()
     assert result.metrics["scans_that_differ"] == 0
-    assert 400_000 < result.counters["rx3"]["ticks_max"] <= 520_000
+    assert result.counters["rx3"]["scans"] == 6
 
 
 def once_listening(run: Callable[[], RunResult]) -> RunResult:
