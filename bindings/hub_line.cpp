@@ -2,11 +2,53 @@
 
 #include "echofuse/hub/locate/line_locator.hpp"
 #include "echofuse/hub/locate/wall.hpp"
+#include "echofuse/hub/measure/trace_pairing.hpp"
 #include "hub.hpp"
 
 namespace echofuse::bindings {
 
+namespace {
+
+void bind_trace_pairing(py::module_& m) {
+  using hub::ClosingRule;
+  using hub::PairingRule;
+  using hub::TraceCouple;
+  using hub::TracePairing;
+  using hub::TracePairingConfig;
+  PYBIND11_NUMPY_DTYPE(TraceCouple, delay1_s, delay2_s, centre, completions);
+  py::enum_<PairingRule>(m, "PairingRule")
+      .value("assignment", PairingRule::kAssignment)
+      .value("all_pairs", PairingRule::kAllPairs);
+  py::enum_<ClosingRule>(m, "ClosingRule")
+      .value("exact", ClosingRule::kExact)
+      .value("printed", ClosingRule::kPrinted);
+  ConfigBinder<TracePairingConfig>(m, "TracePairingConfig", "Couples of two receivers' traces.")
+      .field("rule", &TracePairingConfig::rule)
+      .field("closing", &TracePairingConfig::closing)
+      .field("separation_m", &TracePairingConfig::separation_m, "[m] between the receivers")
+      .field("clock_hz", &TracePairingConfig::clock_hz, "[Hz]")
+      .field("correction_samples", &TracePairingConfig::correction_samples, "[sample]")
+      .field("completion_limit", &TracePairingConfig::completion_limit, "responses");
+  py::class_<TracePairing>(m, "TracePairing")
+      .def(py::init<>())
+      .def("configure", &TracePairing::configure, py::arg("config"))
+      .def("reset", &TracePairing::reset)
+      .def(
+          "process",
+          [](TracePairing& self, const FloatArray& delay1, const FloatArray& delay2) {
+            BoundedVector<TraceCouple, kMaxPointsPerFrame> couples;
+            const Status status =
+                self.process(as_span(delay1, "delay1_s"), as_span(delay2, "delay2_s"), couples);
+            return py::make_tuple(status, to_array(couples));
+          },
+          py::arg("delay1_s").noconvert(), py::arg("delay2_s").noconvert(),
+          "(status, structured array of TraceCouple).");
+}
+
+}  // namespace
+
 void bind_hub_line(py::module_& m) {
+  bind_trace_pairing(m);
   using hub::LineFix;
   using hub::LineFixStatus;
   using hub::LineLocator;

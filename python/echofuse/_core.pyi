@@ -18,6 +18,7 @@ __all__: list[str] = [
     "CfarConfig",
     "CfarDetector",
     "CfarMethod",
+    "ClosingRule",
     "ClusterDistance",
     "ClusterRepresentative",
     "ClutterConfig",
@@ -55,6 +56,7 @@ __all__: list[str] = [
     "NodeSite",
     "NoiseFloor",
     "NoiseFloorConfig",
+    "PairingRule",
     "Pcg32",
     "PeakInitialisation",
     "PhdConfig",
@@ -83,6 +85,8 @@ __all__: list[str] = [
     "Status",
     "TAPS",
     "TimeZero",
+    "TracePairing",
+    "TracePairingConfig",
     "TrackManager",
     "TrackManagerConfig",
     "TrackState",
@@ -1707,6 +1711,143 @@ class Coverage:
         """
     @property
     def bistatic_constant(self) -> float: ...
+
+class PairingRule:
+    """
+    Members:
+
+      assignment
+
+      all_pairs
+    """
+
+    __members__: typing.ClassVar[dict[str, PairingRule]]
+    all_pairs: typing.ClassVar[PairingRule]
+    assignment: typing.ClassVar[PairingRule]
+    @typing.overload
+    def __eq__(self, other: PairingRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: PairingRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ClosingRule:
+    """
+    Members:
+
+      exact
+
+      printed
+    """
+
+    __members__: typing.ClassVar[dict[str, ClosingRule]]
+    exact: typing.ClassVar[ClosingRule]
+    printed: typing.ClassVar[ClosingRule]
+    @typing.overload
+    def __eq__(self, other: ClosingRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClosingRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class TracePairingConfig:
+    """
+    Couples of two receivers' traces.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    closing: ClosingRule
+    rule: PairingRule
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> TracePairingConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> TracePairingConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        rule: PairingRule = ...,
+        closing: ClosingRule = ...,
+        separation_m: float = 0.8,
+        clock_hz: float = 4500000000.0,
+        correction_samples: int = 1,
+        completion_limit: int = 3,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def clock_hz(self) -> float:
+        """
+        [Hz]
+        """
+    @clock_hz.setter
+    def clock_hz(self, value: float) -> None: ...
+    @property
+    def completion_limit(self) -> int:
+        """
+        responses
+        """
+    @completion_limit.setter
+    def completion_limit(self, value: int) -> None: ...
+    @property
+    def correction_samples(self) -> int:
+        """
+        [sample]
+        """
+    @correction_samples.setter
+    def correction_samples(self, value: int) -> None: ...
+    @property
+    def separation_m(self) -> float:
+        """
+        [m] between the receivers
+        """
+    @separation_m.setter
+    def separation_m(self, value: float) -> None: ...
+
+class TracePairing:
+    def __init__(self) -> None: ...
+    def configure(self, config: TracePairingConfig) -> Status: ...
+    def process(
+        self, delay1_s: numpy.typing.NDArray[numpy.float32], delay2_s: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of TraceCouple).
+        """
+    def reset(self) -> None: ...
 
 class WallCompensation:
     """

@@ -23,6 +23,7 @@ ROWS: dict[str, Tolerance] = {
         0.0, 1e-3, "a path of 16 m carries 1e-6 m in float32, times up to 500 across range for a 0.4 m array"
     ),
     "hub.line.covariance": Tolerance(2e-3, 0.0, "differences of unit vectors of 0.05 in float32, squared"),
+    "hub.pairing.delay": Tolerance(1e-6, 0.0, "two products and a sum in float32"),
     "hub.selection.position": Tolerance(0.0, 1e-3, _FIX + "; a position far off the nodes' hull triples it"),
     "hub.selection.range_residual": Tolerance(1e-4, 1e-3, _FIX),
     "hub.selection.weight": Tolerance(1e-6, 1e-6, "a sum of at most 16 float32 weights"),
