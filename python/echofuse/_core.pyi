@@ -18,6 +18,7 @@ __all__: list[str] = [
     "CfarConfig",
     "CfarDetector",
     "CfarMethod",
+    "ClosingRule",
     "ClusterDistance",
     "ClusterRepresentative",
     "ClutterConfig",
@@ -42,6 +43,10 @@ __all__: list[str] = [
     "FrameAssemblerCounters",
     "KalmanTracker",
     "LIMITS",
+    "LineFix",
+    "LineFixStatus",
+    "LineLocator",
+    "LineLocatorConfig",
     "LinkMachine",
     "LinkReader",
     "MEASUREMENT_STAGES_BYTES",
@@ -51,6 +56,7 @@ __all__: list[str] = [
     "NodeSite",
     "NoiseFloor",
     "NoiseFloorConfig",
+    "PairingRule",
     "Pcg32",
     "PeakInitialisation",
     "PhdConfig",
@@ -79,12 +85,17 @@ __all__: list[str] = [
     "Status",
     "TAPS",
     "TimeZero",
+    "TracePairing",
+    "TracePairingConfig",
     "TrackManager",
     "TrackManagerConfig",
     "TrackState",
     "TrackUpdate",
     "Tracker",
     "TransferKind",
+    "Wall",
+    "WallCompensation",
+    "WallConfig",
     "assign",
     "cassini_ratio",
     "crc16",
@@ -106,6 +117,7 @@ __all__: list[str] = [
     "sum_on_cassini_m",
     "systematic_resample",
     "time_of_arrival_s",
+    "two_ellipses",
     "write_frame",
 ]
 
@@ -1700,6 +1712,326 @@ class Coverage:
     @property
     def bistatic_constant(self) -> float: ...
 
+class PairingRule:
+    """
+    Members:
+
+      assignment
+
+      all_pairs
+    """
+
+    __members__: typing.ClassVar[dict[str, PairingRule]]
+    all_pairs: typing.ClassVar[PairingRule]
+    assignment: typing.ClassVar[PairingRule]
+    @typing.overload
+    def __eq__(self, other: PairingRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: PairingRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class ClosingRule:
+    """
+    Members:
+
+      exact
+
+      printed
+    """
+
+    __members__: typing.ClassVar[dict[str, ClosingRule]]
+    exact: typing.ClassVar[ClosingRule]
+    printed: typing.ClassVar[ClosingRule]
+    @typing.overload
+    def __eq__(self, other: ClosingRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClosingRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class TracePairingConfig:
+    """
+    Couples of two receivers' traces.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    closing: ClosingRule
+    rule: PairingRule
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> TracePairingConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> TracePairingConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        rule: PairingRule = ...,
+        closing: ClosingRule = ...,
+        separation_m: float = 0.8,
+        clock_hz: float = 4500000000.0,
+        correction_samples: int = 1,
+        completion_limit: int = 3,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def clock_hz(self) -> float:
+        """
+        [Hz]
+        """
+    @clock_hz.setter
+    def clock_hz(self, value: float) -> None: ...
+    @property
+    def completion_limit(self) -> int:
+        """
+        responses
+        """
+    @completion_limit.setter
+    def completion_limit(self, value: int) -> None: ...
+    @property
+    def correction_samples(self) -> int:
+        """
+        [sample]
+        """
+    @correction_samples.setter
+    def correction_samples(self, value: int) -> None: ...
+    @property
+    def separation_m(self) -> float:
+        """
+        [m] between the receivers
+        """
+    @separation_m.setter
+    def separation_m(self, value: float) -> None: ...
+
+class TracePairing:
+    def __init__(self) -> None: ...
+    def configure(self, config: TracePairingConfig) -> Status: ...
+    def process(
+        self, delay1_s: numpy.typing.NDArray[numpy.float32], delay2_s: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of TraceCouple).
+        """
+    def reset(self) -> None: ...
+
+class WallCompensation:
+    """
+    Members:
+
+      none
+
+      first_kind
+
+      second_kind
+    """
+
+    __members__: typing.ClassVar[dict[str, WallCompensation]]
+    first_kind: typing.ClassVar[WallCompensation]
+    none: typing.ClassVar[WallCompensation]
+    second_kind: typing.ClassVar[WallCompensation]
+    @typing.overload
+    def __eq__(self, other: WallCompensation) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: WallCompensation) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class WallConfig:
+    """
+    A homogeneous slab.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    compensation: WallCompensation
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> WallConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> WallConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        thickness_m: float = 0.24,
+        relative_permittivity: float = 4.0,
+        compensation: WallCompensation = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def relative_permittivity(self) -> float:
+        """
+        [1]
+        """
+    @relative_permittivity.setter
+    def relative_permittivity(self, value: float) -> None: ...
+    @property
+    def thickness_m(self) -> float:
+        """
+        [m]
+        """
+    @thickness_m.setter
+    def thickness_m(self, value: float) -> None: ...
+
+class Wall:
+    def __init__(self) -> None: ...
+    def configure(self, config: WallConfig) -> Status: ...
+    def ray(
+        self,
+        lateral_m: typing.SupportsFloat | typing.SupportsIndex,
+        depth_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[float, float, float]:
+        """
+        (excess [m], gradient of the optical path along the wall, and across it), one way.
+        """
+
+class LineFixStatus:
+    """
+    Members:
+
+      fix
+
+      no_intersection
+
+      too_near_axis
+
+      singular
+    """
+
+    __members__: typing.ClassVar[dict[str, LineFixStatus]]
+    fix: typing.ClassVar[LineFixStatus]
+    no_intersection: typing.ClassVar[LineFixStatus]
+    singular: typing.ClassVar[LineFixStatus]
+    too_near_axis: typing.ClassVar[LineFixStatus]
+    @typing.overload
+    def __eq__(self, other: LineFixStatus) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: LineFixStatus) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class LineLocatorConfig:
+    """
+    Position before a line of antennas.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    wall: WallConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> LineLocatorConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> LineLocatorConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(self, *, wall: WallConfig = ..., path_std_m: float = 0.033) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def path_std_m(self) -> float:
+        """
+        [m]
+        """
+    @path_std_m.setter
+    def path_std_m(self, value: float) -> None: ...
+
+class LineFix:
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def covariance_m2(self) -> tuple[float, float, float]:
+        """
+        (xx, xy, yy) [m^2]
+        """
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def position_m(self) -> tuple[float, float]: ...
+    @property
+    def status(self) -> LineFixStatus: ...
+
+class LineLocator:
+    def __init__(self) -> None: ...
+    def configure(self, config: LineLocatorConfig, rx_x_m: numpy.typing.NDArray[numpy.float32]) -> Status: ...
+    def process(
+        self, path_m: numpy.typing.NDArray[numpy.float32], weight: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, LineFix]:
+        """
+        (status, LineFix).
+        """
+
 class FrameAssemblerConfig:
     """
     Lines up the nodes' reports.
@@ -3260,6 +3592,12 @@ def systematic_resample(
 def time_of_arrival_s(
     to_tx_m: typing.SupportsFloat | typing.SupportsIndex, to_rx_m: typing.SupportsFloat | typing.SupportsIndex
 ) -> float: ...
+def two_ellipses(
+    path1_m: typing.SupportsFloat | typing.SupportsIndex,
+    path2_m: typing.SupportsFloat | typing.SupportsIndex,
+    rx1_x_m: typing.SupportsFloat | typing.SupportsIndex,
+    rx2_x_m: typing.SupportsFloat | typing.SupportsIndex,
+) -> LineFix: ...
 def write_frame(
     source: typing.SupportsInt | typing.SupportsIndex,
     port: typing.SupportsInt | typing.SupportsIndex,

@@ -17,6 +17,13 @@ ROWS: dict[str, Tolerance] = {
     ),
     "hub.ellipse.range_residual": Tolerance(1e-4, 5e-4, _FIX),
     "hub.ellipse.equation_residual": Tolerance(1e-3, 5e-3, "rows of up to 500 m^3 in float32 leave 1e-3 m^3"),
+    "hub.wall.excess": Tolerance(1e-6, 4e-6, "difference of two float32 lengths of up to 12 m"),
+    "hub.wall.direction": Tolerance(0.0, 1e-5, "tangent in float32, over the little air of a grazing ray"),
+    "hub.line.position": Tolerance(
+        0.0, 1e-3, "a path of 16 m carries 1e-6 m in float32, times up to 500 across range for a 0.4 m array"
+    ),
+    "hub.line.covariance": Tolerance(2e-3, 0.0, "differences of unit vectors of 0.05 in float32, squared"),
+    "hub.pairing.delay": Tolerance(1e-6, 0.0, "two products and a sum in float32"),
     "hub.selection.position": Tolerance(0.0, 1e-3, _FIX + "; a position far off the nodes' hull triples it"),
     "hub.selection.range_residual": Tolerance(1e-4, 1e-3, _FIX),
     "hub.selection.weight": Tolerance(1e-6, 1e-6, "a sum of at most 16 float32 weights"),

@@ -1,0 +1,50 @@
+"""Delay of a wave through a wall: the trace corrections of the through-wall paper, section 2."""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+MIN_AIR_M = 0.01  # [m] of air on a ray, at least: a place within the wall is taken as just behind it
+
+
+class WallConfig(Protocol):
+    thickness_m: float
+    relative_permittivity: float
+    compensation: str  # none | first_kind | second_kind
+
+
+class Ray(NamedTuple):
+    optical_m: float  # straight line and excess [m]
+    excess_m: float  # speed of light times the time, less the straight line [m]
+    direction: NDArray[np.float64]  # (2,) gradient of optical_m by (lateral, depth); a unit vector
+
+
+def sine_in_air(thickness_m: float, relative_permittivity: float, lateral_m: float, air_m: float) -> float:
+    """Sine of the angle in air of the ray that obeys Snell's law, by bisection."""
+    low, high = 0.0, 1.0
+    for _ in range(200):
+        p = 0.5 * (low + high)
+        reached = air_m * p / np.sqrt(1 - p**2) + thickness_m * p / np.sqrt(relative_permittivity - p**2)
+        low, high = (p, high) if reached < lateral_m else (low, p)
+    return low
+
+
+def ray(config: WallConfig, lateral_m: float, depth_m: float) -> Ray:
+    """Return the ray over ``lateral_m`` >= 0 along the wall and ``depth_m`` > 0 across it.
+
+    The stand-off of the wall makes no difference.
+    """
+    straight = float(np.hypot(lateral_m, depth_m))
+    direction = np.array([lateral_m, depth_m]) / straight
+    w, permittivity = config.thickness_m, config.relative_permittivity
+    if config.compensation == "none" or w == 0.0:
+        return Ray(straight, 0.0, direction)
+    if config.compensation == "first_kind":
+        excess = w * (np.sqrt(permittivity) - 1.0)
+        return Ray(straight + excess, excess, direction)
+    air = max(depth_m - w, MIN_AIR_M)
+    p = sine_in_air(w, permittivity, lateral_m, air)
+    optical = air / np.sqrt(1 - p**2) + w * permittivity / np.sqrt(permittivity - p**2)
+    excess = float(optical - np.hypot(lateral_m, air + w))
+    return Ray(straight + excess, excess, np.array([p, np.sqrt(1 - p**2)]))
