@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, m) {
   echofuse::bindings::bind_signal(m);
   echofuse::bindings::bind_estimation(m);
   echofuse::bindings::bind_node(m);
+  echofuse::bindings::bind_node_through_wall(m);
   echofuse::bindings::bind_hub(m);
   echofuse::bindings::bind_link(m);
 }
