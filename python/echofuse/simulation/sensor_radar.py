@@ -36,6 +36,7 @@ class Purpose(IntEnum):
     BODY = 1
     SCAN = 2
     REFERENCE = 3
+    START_CHIP = 4
 
 
 @dataclass(frozen=True, kw_only=True)
