@@ -59,7 +59,7 @@ def test_a_run_has_the_shapes_of_a_recording() -> None:
     truth = run.truth[0]
     np.testing.assert_allclose(truth.position_m[:, 0], [10.3, 10.15, 10.0])
     assert truth.position_m.shape == (3, 3)
-    assert n_frames(SCENE, 6.1) == 61
+    assert n_frames(SCENE.scan_period_s, 6.1) == 61
 
 
 def test_a_run_is_a_function_of_scene_people_and_seed() -> None:
@@ -200,4 +200,4 @@ def test_bad_scenes_and_counts_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match="person_id"):
         SensorRadarSimulation(SCENE, case_study_people(1) * 2, seed=0)
     with pytest.raises(ValueError, match="duration_s"):
-        n_frames(SCENE, 0.05)
+        n_frames(SCENE.scan_period_s, 0.05)

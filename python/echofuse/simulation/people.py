@@ -46,6 +46,18 @@ class Person:
     def centre_height_m(self) -> float:
         return TORSO_HEIGHTS[1] * self.height_m
 
+    @property
+    def width_m(self) -> float:
+        """Of the torso."""
+        return 2.0 * _half_axes(self.radius_m)[1]
+
+    def gait_cycles(self, time_s: float) -> float:
+        """Cycles of two steps since the start, and the phase then; stride as Boulic et al. 1990."""
+        leg_m = 0.491 * self.height_m
+        nominal_hz = self.walk.speed_mps / leg_m
+        stride_m = 1.346 * math.sqrt(nominal_hz) * leg_m
+        return self.gait_phase + float(self.walk.distance_m(time_s)) / stride_m
+
     def position_m(self, time_s: Array) -> Array:
         """time_s (n,) -> (n, 3)."""
         ground = self.walk.position_m(time_s)
@@ -153,11 +165,8 @@ class Body:
     def _local_position(self, time_s: float, speed_mps: float) -> Array:
         """(n, 3) in the body's own frame, origin on the ground under the centre; roughness not included."""
         person = self.person
-        leg_m = 0.491 * person.height_m
-        nominal_hz = person.walk.speed_mps / leg_m
-        stride_m = 1.346 * math.sqrt(nominal_hz) * leg_m  # one cycle, two steps (Boulic et al. 1990)
-        phase = person.gait_phase + float(person.walk.distance_m(time_s)) / stride_m
-        speed_hz = speed_mps / leg_m
+        phase = person.gait_cycles(time_s)
+        speed_hz = speed_mps / (0.491 * person.height_m)
         trunk, limbs = self._trunk(time_s), []
         for limb in (_arm, _leg):
             for side, shift in ((-1.0, 0.0), (1.0, 0.5)):  # right, left

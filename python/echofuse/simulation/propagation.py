@@ -96,7 +96,7 @@ def static_ways(scene: Scene, node: RadarNode) -> Ways:
     tx, rx = np.array(node.tx_position_m), np.array(node.rx_position_m)
     wavelength, antennas = scene.wavelength_m(), 10.0 ** (scene.radio.antenna_gain_db / 10.0)
     rows = []
-    for factor, corners in _reflected(tx, rx, scene.room.surfaces()):
+    for factor, corners in reflected_corners(tx, rx, scene.room.surfaces()):
         length = float(np.sum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
         pattern = dipole(corners[1] - corners[0]) * dipole(corners[-1] - corners[-2])
         rows.append((length, factor * float(friis_gain(length, wavelength) * pattern), corners))
@@ -110,7 +110,7 @@ def static_ways(scene: Scene, node: RadarNode) -> Ways:
     return Ways(delay_s, antennas * np.array([gain for _, gain, _ in rows]), corners_m)
 
 
-def _reflected(tx: Array, rx: Array, surfaces: tuple[Surface, ...]) -> list[tuple[float, Array]]:
+def reflected_corners(tx: Array, rx: Array, surfaces: tuple[Surface, ...]) -> list[tuple[float, Array]]:
     """(product of reflections, corners (2 to 4, 3)) of the direct path and of up to two reflections."""
     found = [(1.0, np.stack([tx, rx]))]
     for first in surfaces:

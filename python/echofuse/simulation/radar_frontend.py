@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from echofuse.simulation.propagation import Paths
 from echofuse.simulation.radio import Pulse, Radio
+from echofuse.simulation.synthesis import path_spectrum
 
 Array = NDArray[np.float64]
 
@@ -28,8 +29,8 @@ class RadarFrontend:
         shape = np.exp(-0.5 * offset**2)
         in_band = np.flatnonzero(shape > FAINTEST)
         self._first_bin = int(in_band[0])
-        self._step = int(np.ceil(np.sqrt(len(in_band))))  # the grid as step * a + b, so that phases factor
-        self._bins = slice(self._first_bin, min(self._first_bin + self._step**2, len(shape)))
+        step = int(np.ceil(np.sqrt(len(in_band))))  # a square costs no more
+        self._bins = slice(self._first_bin, min(self._first_bin + step**2, len(shape)))
         scale = 0.5 * pulse.envelope_deviation_s * np.sqrt(2.0 * np.pi) * radio.sample_rate_hz
         self._template_v = radio.pulse_amplitude_v(pulse) * scale * shape[self._bins]
         self._noise_shape_v = self._noise_spectrum()
@@ -41,11 +42,13 @@ class RadarFrontend:
         loudest = float(np.max(np.abs(paths.gain), initial=0.0))
         heard = (delay_s > -guard_s) & (delay_s < self.radio.pulse_period_s + guard_s)
         heard &= np.abs(paths.gain) > FAINTEST * loudest
-        # exp(-j 2 pi (first + step a + b) df tau) = (a part) (b part): two small tables, one matrix product.
-        turn = -2j * np.pi * delay_s[heard] * (self.radio.sample_rate_hz / self._n_fft)
-        coarse = _powers(np.exp(self._step * turn), self._step)
-        coarse *= np.exp(self._first_bin * turn) * paths.gain[heard]
-        response = (coarse @ _powers(np.exp(turn), self._step).T).ravel()[: len(self._template_v)]
+        response = path_spectrum(
+            delay_s[heard],
+            paths.gain[heard],
+            first_bin=self._first_bin,
+            n_bins=len(self._template_v),
+            bin_spacing_hz=self.radio.sample_rate_hz / self._n_fft,
+        )
         spectrum = np.zeros(len(self._frequency_hz), dtype=np.complex128)
         spectrum[self._bins] = response * self._template_v
         return np.asarray(np.fft.irfft(spectrum, self._n_fft)[: self.radio.n_samples])
@@ -79,18 +82,6 @@ class RadarFrontend:
         power[[0, -1]] = 0.0  # these two bins are real
         variance = 4.0 * float(np.sum(power)) / self._n_fft**2  # of irfft with unit normals in both parts
         return np.asarray(np.sqrt(power / variance) * self.radio.noise_deviation_v)
-
-
-def _powers(base: NDArray[np.complex128], count: int) -> NDArray[np.complex128]:
-    """(count, n): base^0 to base^(count - 1), for |base| = 1."""
-    table = np.empty((count, len(base)), dtype=np.complex128)
-    table[0] = 1.0
-    done, step = 1, base
-    while done < count:
-        more = min(done, count - done)
-        table[done : done + more] = table[:more] * step
-        done, step = done + more, step * step
-    return table
 
 
 def _even_fft_size(at_least: int) -> int:

@@ -36,6 +36,7 @@ class Purpose(IntEnum):
     BODY = 1
     SCAN = 2
     REFERENCE = 3
+    START_CHIP = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,9 +121,9 @@ class SensorRadarSimulation:
         return np.random.default_rng([self.seed, int(purpose), who, which])
 
 
-def n_frames(scene: Scene, duration_s: float) -> int:
+def n_frames(scan_period_s: float, duration_s: float) -> int:
     """How many whole scan periods fit."""
-    count = int(duration_s / scene.scan_period_s + 1e-6)
+    count = int(duration_s / scan_period_s + 1e-6)
     if count < 1:
         raise ValueError("duration_s: shorter than one scan period")
     return count
@@ -133,7 +134,7 @@ def simulate_frames(
 ) -> Iterator[SimulatedFrame]:
     """Frame by frame, for a live emulation."""
     simulation = SensorRadarSimulation(scene, people, seed=seed)
-    return (simulation.frame(index) for index in range(n_frames(scene, duration_s)))
+    return (simulation.frame(index) for index in range(n_frames(scene.scan_period_s, duration_s)))
 
 
 def simulate(
@@ -147,7 +148,7 @@ def simulate(
 ) -> Recording:
     """A whole run in memory; `progress` goes through the frames, and may show how far it is."""
     simulation = SensorRadarSimulation(scene, people, seed=seed)
-    total, radio, pulse = n_frames(scene, duration_s), scene.radio, scene.pulse
+    total, radio, pulse = n_frames(scene.scan_period_s, duration_s), scene.radio, scene.pulse
     scans = np.empty((len(scene.nodes), total, radio.n_samples), dtype=np.float32)
     time_s = np.empty((len(scene.nodes), total))
     for index in progress(range(total)):
