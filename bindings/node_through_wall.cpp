@@ -11,7 +11,8 @@ using namespace echofuse::node;
 
 void bind_time_zero(py::module_& m) {
   ConfigBinder<TimeZeroConfig>(m, "TimeZeroConfig", "Time zero of an M-sequence radar.")
-      .field("learning_responses", &TimeZeroConfig::learning_responses, "whose mean shows the cross-talk, >= 1")
+      .field("learning_responses", &TimeZeroConfig::learning_responses,
+             "whose mean shows the cross-talk, >= 1")
       .field("strong_fraction", &TimeZeroConfig::strong_fraction, "of the largest magnitude, in (0, 1]")
       .field("least_peak_factor", &TimeZeroConfig::least_peak_factor, "largest over mean magnitude, > 1")
       .field("moved_samples", &TimeZeroConfig::moved_samples, "[sample] farther away, it has moved, >= 0")
@@ -40,7 +41,8 @@ void bind_time_zero(py::module_& m) {
 
 void bind_weak_signal(py::module_& m) {
   ConfigBinder<WeakSignalConfig>(m, "WeakSignalConfig", "Weak-signal enhancement.")
-      .field("floor_factor", &WeakSignalConfig::floor_factor, "least divisor in deviations of the noise, >= 0")
+      .field("floor_factor", &WeakSignalConfig::floor_factor,
+             "least divisor in deviations of the noise, >= 0")
       .field("noise_samples", &WeakSignalConfig::noise_samples, "[sample] at the end of a response, >= 1")
       .field("averaging_factor", &WeakSignalConfig::averaging_factor, "weight of the past, in [0, 1)");
   py::class_<WeakSignalEnhancer>(m, "WeakSignalEnhancer", "Raises far echoes to the height of near ones.")
@@ -100,7 +102,8 @@ void bind_target_traces(py::module_& m) {
             const Status status = self.process(as_span(decisions, "decisions"), traces);
             return py::make_tuple(status, to_array(traces));
           },
-          py::arg("decisions").noconvert(), "(status, traces): decisions (n_samples,); traces is structured.");
+          py::arg("decisions").noconvert(),
+          "(status, traces): decisions (n_samples,); traces is structured.");
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ __all__: list[str] = [
     "ClutterConfig",
     "ClutterFilter",
     "ClutterMethod",
+    "ClutterSpread",
     "ConstantVelocityFilter",
     "Coverage",
     "CoverageConfig",
@@ -41,6 +42,8 @@ __all__: list[str] = [
     "FrameAssembler",
     "FrameAssemblerConfig",
     "FrameAssemblerCounters",
+    "GaussianCfarConfig",
+    "GaussianCfarDetector",
     "KalmanTracker",
     "LIMITS",
     "LineFix",
@@ -84,7 +87,12 @@ __all__: list[str] = [
     "SensorRadarNodeConfig",
     "Status",
     "TAPS",
+    "TargetTraceConfig",
+    "TargetTracer",
     "TimeZero",
+    "TimeZeroConfig",
+    "TimeZeroFinder",
+    "TimeZeroResult",
     "TracePairing",
     "TracePairingConfig",
     "TrackManager",
@@ -96,6 +104,8 @@ __all__: list[str] = [
     "Wall",
     "WallCompensation",
     "WallConfig",
+    "WeakSignalConfig",
+    "WeakSignalEnhancer",
     "assign",
     "cassini_ratio",
     "crc16",
@@ -1390,6 +1400,351 @@ class SensorRadarNode:
     def set_empty_room(self, scan: numpy.typing.NDArray[numpy.float32]) -> Status:
         """
         scan (n_samples,) [count] of the empty room, averaged into the background
+        """
+
+class TimeZeroConfig:
+    """
+    Time zero of an M-sequence radar.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> TimeZeroConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> TimeZeroConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        learning_responses: int = 10,
+        strong_fraction: float = 0.5,
+        least_peak_factor: float = 10.0,
+        moved_samples: int = 2,
+        moved_responses: int = 3,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def learning_responses(self) -> int:
+        """
+        whose mean shows the cross-talk, >= 1
+        """
+    @learning_responses.setter
+    def learning_responses(self, value: int) -> None: ...
+    @property
+    def least_peak_factor(self) -> float:
+        """
+        largest over mean magnitude, > 1
+        """
+    @least_peak_factor.setter
+    def least_peak_factor(self, value: float) -> None: ...
+    @property
+    def moved_responses(self) -> int:
+        """
+        in a row: switched on anew, >= 1
+        """
+    @moved_responses.setter
+    def moved_responses(self, value: int) -> None: ...
+    @property
+    def moved_samples(self) -> int:
+        """
+        [sample] farther away, it has moved, >= 0
+        """
+    @moved_samples.setter
+    def moved_samples(self, value: int) -> None: ...
+    @property
+    def strong_fraction(self) -> float:
+        """
+        of the largest magnitude, in (0, 1]
+        """
+    @strong_fraction.setter
+    def strong_fraction(self, value: float) -> None: ...
+
+class TimeZeroResult:
+    """
+    Where a response's cross-talk was.
+    """
+    @property
+    def found(self) -> bool:
+        """
+        the response is rotated
+        """
+    @property
+    def fraction_samples(self) -> float:
+        """
+        [sample] behind its own
+        """
+    @property
+    def moved(self) -> bool:
+        """
+        what was learnt so far is void
+        """
+    @property
+    def rotation_samples(self) -> int:
+        """
+        [sample] to the left
+        """
+
+class TimeZeroFinder:
+    """
+    Turns responses until the cross-talk stands in its place.
+    """
+    def __init__(self) -> None: ...
+    def configure(
+        self,
+        config: TimeZeroConfig,
+        n_samples: typing.SupportsInt | typing.SupportsIndex,
+        expected_samples: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Status: ...
+    def process(
+        self, response: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, TimeZeroResult, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, result, rotated): response (n_samples,) [count].
+        """
+    def reset(self) -> None: ...
+
+class WeakSignalConfig:
+    """
+    Weak-signal enhancement.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> WeakSignalConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> WeakSignalConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self, *, floor_factor: float = 4.0, noise_samples: int = 64, averaging_factor: float = 0.95
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def averaging_factor(self) -> float:
+        """
+        weight of the past, in [0, 1)
+        """
+    @averaging_factor.setter
+    def averaging_factor(self, value: float) -> None: ...
+    @property
+    def floor_factor(self) -> float:
+        """
+        least divisor in deviations of the noise, >= 0
+        """
+    @floor_factor.setter
+    def floor_factor(self, value: float) -> None: ...
+    @property
+    def noise_samples(self) -> int:
+        """
+        [sample] at the end of a response, >= 1
+        """
+    @noise_samples.setter
+    def noise_samples(self, value: int) -> None: ...
+
+class WeakSignalEnhancer:
+    """
+    Raises far echoes to the height of near ones.
+    """
+    def __init__(self) -> None: ...
+    def configure(
+        self, config: WeakSignalConfig, n_samples: typing.SupportsInt | typing.SupportsIndex
+    ) -> Status: ...
+    def noise(self) -> float:
+        """
+        [count] rms
+        """
+    def process(
+        self, samples: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.float32]]:
+        """
+        (status, enhanced): both (n_samples,), the latter in [-1, 1].
+        """
+    def reset(self) -> None: ...
+
+class ClutterSpread:
+    """
+    What the slow spread is about.
+
+    Members:
+
+      standard_deviation : the slow mean
+
+      rms : 0
+    """
+
+    __members__: typing.ClassVar[dict[str, ClutterSpread]]
+    rms: typing.ClassVar[ClutterSpread]
+    standard_deviation: typing.ClassVar[ClutterSpread]
+    @typing.overload
+    def __eq__(self, other: ClutterSpread) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: ClutterSpread) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class GaussianCfarConfig:
+    """
+    CFAR for Gaussian clutter.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> GaussianCfarConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> GaussianCfarConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        fast_factor: float = 0.3,
+        slow_factor: float = 0.02,
+        deviations: float = 1.0,
+        spread: ClutterSpread = ...,
+        starting_samples: int = 200,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def deviations(self) -> float:
+        """
+        of the fast mean above the slow one, > 0
+        """
+    @deviations.setter
+    def deviations(self, value: float) -> None: ...
+    @property
+    def fast_factor(self) -> float:
+        """
+        weight of a sample, in (0, 1]
+        """
+    @fast_factor.setter
+    def fast_factor(self, value: float) -> None: ...
+    @property
+    def slow_factor(self) -> float:
+        """
+        weight of a sample, in (0, 1]
+        """
+    @slow_factor.setter
+    def slow_factor(self, value: float) -> None: ...
+    @property
+    def spread(self) -> ClutterSpread:
+        """
+        what the slow spread is about
+        """
+    @spread.setter
+    def spread(self, value: ClutterSpread) -> None: ...
+    @property
+    def starting_samples(self) -> int:
+        """
+        [sample] of the run-in, >= 1
+        """
+    @starting_samples.setter
+    def starting_samples(self, value: int) -> None: ...
+
+class GaussianCfarDetector:
+    """
+    Decides along one response.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: GaussianCfarConfig) -> Status: ...
+    def delay_samples(self) -> float:
+        """
+        [sample] by which the fast mean is late
+        """
+    def process(
+        self, samples: numpy.typing.NDArray[numpy.float32]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.uint8]]:
+        """
+        (status, decisions): both (n_samples,), the latter 0 or 1.
+        """
+
+class TargetTraceConfig:
+    """
+    Simple targets for distributed ones.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> TargetTraceConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> TargetTraceConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self, *, window_samples: int = 15, least_hits: int = 5, density_correction: bool = False
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def density_correction(self) -> bool:
+        """
+        for what missing hits delay
+        """
+    @density_correction.setter
+    def density_correction(self, value: bool) -> None: ...
+    @property
+    def least_hits(self) -> int:
+        """
+        in the window, 1 to window_samples
+        """
+    @least_hits.setter
+    def least_hits(self, value: int) -> None: ...
+    @property
+    def window_samples(self) -> int:
+        """
+        [sample] a person's extent, >= 1
+        """
+    @window_samples.setter
+    def window_samples(self, value: int) -> None: ...
+
+class TargetTracer:
+    """
+    Where targets begin.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: TargetTraceConfig) -> Status: ...
+    def process(
+        self, decisions: numpy.typing.NDArray[numpy.uint8]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, traces): decisions (n_samples,); traces is structured.
         """
 
 class Point:

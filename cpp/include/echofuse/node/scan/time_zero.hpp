@@ -11,11 +11,12 @@
 namespace echofuse::node {
 
 struct TimeZeroConfig {
-  int learning_responses = 10;      ///< whose mean shows the cross-talk, >= 1
-  float strong_fraction = 0.5f;     ///< of the largest magnitude: a maximum that may be the cross-talk, in (0, 1]
+  int learning_responses = 10;  ///< whose mean shows the cross-talk, >= 1
+  float strong_fraction =
+      0.5f;  ///< of the largest magnitude: a maximum that may be the cross-talk, in (0, 1]
   float least_peak_factor = 10.0f;  ///< largest over mean magnitude, below which there is no cross-talk, > 1
   int moved_samples = 2;            ///< [sample] farther away, the cross-talk has moved, >= 0
-  int moved_responses = 3;          ///< in a row with the cross-talk elsewhere: the radar was switched on anew, >= 1
+  int moved_responses = 3;  ///< in a row with the cross-talk elsewhere: the radar was switched on anew, >= 1
 };
 
 const char* invalid_field(const TimeZeroConfig& config);

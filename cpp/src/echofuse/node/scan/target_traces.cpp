@@ -51,8 +51,9 @@ float TargetTracer::beginning(int sample, int weight) const {
   const auto before = static_cast<float>(config_.least_hits - 1);
   float toa = static_cast<float>(sample) - before;
   if (config_.density_correction)
-    toa -= before *
-           (std::min(static_cast<float>(config_.window_samples) / static_cast<float>(weight), kThinnest) - 1.0f);
+    toa -=
+        before *
+        (std::min(static_cast<float>(config_.window_samples) / static_cast<float>(weight), kThinnest) - 1.0f);
   return std::max(toa, 0.0f);
 }
 

@@ -9,7 +9,8 @@ namespace echofuse::node {
 const char* invalid_field(const TimeZeroConfig& config) {
   if (config.learning_responses < 1) return "learning_responses";
   if (!(config.strong_fraction > 0.0f && config.strong_fraction <= 1.0f)) return "strong_fraction";
-  if (!(config.least_peak_factor > 1.0f && std::isfinite(config.least_peak_factor))) return "least_peak_factor";
+  if (!(config.least_peak_factor > 1.0f && std::isfinite(config.least_peak_factor)))
+    return "least_peak_factor";
   if (config.moved_samples < 0) return "moved_samples";
   if (config.moved_responses < 1) return "moved_responses";
   return nullptr;
