@@ -1,4 +1,4 @@
-"""The stages of a through-wall receiver one by one: core against reference on the same inputs, every choice."""
+"""The stages of a through-wall receiver one by one, every choice: core against reference."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def passed(board: Scoreboard) -> bool:
 
 
 def responses(rng: np.random.Generator, n: int, power_up: int) -> NDArray[np.float32]:
-    """(n, n_samples) a strong cross-talk, a wall and its echoes, noise; turned by another start at power_up."""
+    """(n, n_samples) cross-talk, a wall and its echoes, noise; turned by another start at power_up."""
     k = np.arange(N_SAMPLES)
     plain = np.zeros(N_SAMPLES)
     for delay, height in ((6.3, 1000.0), (11.8, -620.0), (17.0, 300.0), (60.0, 40.0), (200.0, 9.0)):
@@ -49,7 +49,12 @@ def test_time_zero(moved_responses: int) -> None:
             judged = [expected.found, expected.moved, expected.rotation]
             assert board.decisions("time zero", "decisions", where, decided, judged, expected.margin)
             board.floats(
-                "time zero", "fraction", where, got.fraction_samples, expected.fraction_samples, "node.time_zero"
+                "time zero",
+                "fraction",
+                where,
+                got.fraction_samples,
+                expected.fraction_samples,
+                "node.time_zero",
             )
             np.testing.assert_array_equal(rotated, expected.response.astype(np.float32))
             seen["found"] += got.found
@@ -123,7 +128,12 @@ def test_target_traces(window: int, least: int, density_correction: bool) -> Non
         assert status == (_core.Status.truncated if cut else _core.Status.ok)
         board.decisions("weight", "detections", f"seed {seed}", got["weight"], expected.weight[:16], 1.0)
         board.floats(
-            "toa", "detections", f"seed {seed}", got["toa_samples"], expected.toa_samples[:16], "node.target_trace"
+            "toa",
+            "detections",
+            f"seed {seed}",
+            got["toa_samples"],
+            expected.toa_samples[:16],
+            "node.target_trace",
         )
         n_traces += len(got)
     assert passed(board), board.as_json()

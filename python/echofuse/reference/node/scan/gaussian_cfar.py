@@ -1,4 +1,4 @@
-"""CFAR for Gaussian clutter along one response (Dutta, Arora & Bibyk 2006, as the through-wall paper uses it)."""
+"""CFAR for Gaussian clutter along one response (Dutta, Arora & Bibyk 2006; through-wall paper)."""
 
 from typing import NamedTuple, Protocol
 

@@ -35,8 +35,8 @@ class CrossTalk(NamedTuple):
 def cross_talk(response: Samples, config: TimeZeroConfig) -> CrossTalk:
     """Find the first strong maximum of |response| (n,) [count], which repeats itself every n samples.
 
-    Strong is what reaches a fraction of the largest; the first is the one with the longest rest before it, since
-    nothing comes before the cross-talk but the ends of the farthest echoes.
+    Strong is what reaches a fraction of the largest; the first is the one with the longest rest before it,
+    since nothing comes before the cross-talk but the ends of the farthest echoes.
     """
     amplitude = np.abs(response)
     n = len(amplitude)
