@@ -148,7 +148,7 @@ def test_the_start_chip_is_drawn_at_every_power_up_for_all_receivers() -> None:
     assert before[0] != after[0]
     unrotated = [np.mean(np.roll(node.scans, -6 - before[0], axis=1)[:20], axis=0) for node in run.nodes]
     anew = [np.mean(np.roll(node.scans, -6 - after[0], axis=1)[21:], axis=0) for node in run.nodes]
-    np.testing.assert_allclose(unrotated, anew, atol=6.0 * 30.0 * math.sqrt(2.0 / 19.0))
+    np.testing.assert_allclose(unrotated, anew, atol=6.0 * SCENE.radar.noise_count * math.sqrt(2.0 / 19.0))
 
 
 @pytest.mark.parametrize("at_m", [(0.0, 4.0, 1.2), (1.5, 3.5, 1.2), (-1.9, 1.5, 0.4)])
@@ -177,7 +177,7 @@ def test_a_target_s_echo_falls_with_the_product_of_both_ways() -> None:
     )  # 0.4 m aside counts for 2 m: pattern
 
 
-def test_signal_to_noise_is_20_db_at_2_m_and_a_few_at_the_far_wall() -> None:
+def test_signal_to_noise_is_31_db_at_2_m_and_15_db_at_the_far_wall() -> None:
     """Power of a response's largest sample after exponential averaging (0.95), over the noise's variance."""
     time_s = 0.074 * np.arange(300)
     near, far = [], []
@@ -193,8 +193,10 @@ def test_signal_to_noise_is_20_db_at_2_m_and_a_few_at_the_far_wall() -> None:
         near.append(np.mean(peak[settled & (np.abs(y_m - 2.0) < 0.2)] ** 2))
         far.append(np.mean(peak[settled & (y_m > 5.6)] ** 2))
     noise = SCENE.radar.noise_count**2
-    assert 10.0 * np.log10(np.mean(near) / noise) == pytest.approx(20.0, abs=2.0)
-    assert 10.0 * np.log10(np.mean(far) / noise) == pytest.approx(4.0, abs=2.0)
+    assert 10.0 * np.log10(np.mean(near) / noise) == pytest.approx(
+        31.0, abs=2.0
+    )  # the budget of docs/through_wall.md
+    assert 10.0 * np.log10(np.mean(far) / noise) == pytest.approx(15.0, abs=2.0)
 
 
 def test_a_person_s_echo_is_as_deep_as_a_body_and_begins_at_the_skin() -> None:
