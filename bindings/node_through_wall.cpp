@@ -1,5 +1,6 @@
 #include "common.hpp"
 #include "echofuse/node/scan/gaussian_cfar.hpp"
+#include "echofuse/node/scan/leading_edge.hpp"
 #include "echofuse/node/scan/target_traces.hpp"
 #include "echofuse/node/scan/time_zero.hpp"
 #include "echofuse/node/scan/weak_signal.hpp"
@@ -106,6 +107,27 @@ void bind_target_traces(py::module_& m) {
           "(status, traces): decisions (n_samples,); traces is structured.");
 }
 
+void bind_leading_edge(py::module_& m) {
+  ConfigBinder<LeadingEdgeConfig>(m, "LeadingEdgeConfig", "Where an echo begins.")
+      .field("fraction", &LeadingEdgeConfig::fraction, "of the window's largest envelope, in (0, 1)")
+      .field("before_samples", &LeadingEdgeConfig::before_samples, "[sample] of the window, 0 to 1000")
+      .field("after_samples", &LeadingEdgeConfig::after_samples, "[sample] of the window, 0 to 1000");
+  py::class_<LeadingEdge>(m, "LeadingEdge", "Moves traces to the beginning of their echoes.")
+      .def(py::init<>())
+      .def("configure", &LeadingEdge::configure, py::arg("config"))
+      .def(
+          "process",
+          [](const LeadingEdge& self, const FloatArray& envelope, const ArrayOf<TargetTrace>& given) {
+            BoundedVector<TargetTrace, kMaxDetectionsPerNode> traces;
+            for (const TargetTrace& trace : as_span(given, "traces"))
+              if (!traces.try_push_back(trace)) throw py::value_error("traces: more than one report carries");
+            const Status status = self.process(as_span(envelope, "envelope"), traces);
+            return py::make_tuple(status, to_array(traces));
+          },
+          py::arg("envelope").noconvert(), py::arg("traces").noconvert(),
+          "(status, traces): envelope (n_samples,) [count]; traces as of TargetTracer.");
+}
+
 }  // namespace
 
 void bind_node_through_wall(py::module_& m) {
@@ -113,6 +135,7 @@ void bind_node_through_wall(py::module_& m) {
   bind_weak_signal(m);
   bind_gaussian_cfar(m);
   bind_target_traces(m);
+  bind_leading_edge(m);
 }
 
 }  // namespace echofuse::bindings

@@ -46,6 +46,8 @@ __all__: list[str] = [
     "GaussianCfarDetector",
     "KalmanTracker",
     "LIMITS",
+    "LeadingEdge",
+    "LeadingEdgeConfig",
     "LineFix",
     "LineFixStatus",
     "LineLocator",
@@ -1745,6 +1747,63 @@ class TargetTracer:
     ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
         """
         (status, traces): decisions (n_samples,); traces is structured.
+        """
+
+class LeadingEdgeConfig:
+    """
+    Where an echo begins.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> LeadingEdgeConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> LeadingEdgeConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self, *, fraction: float = 0.5, before_samples: int = 4, after_samples: int = 13
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def after_samples(self) -> int:
+        """
+        [sample] of the window, 0 to 1000
+        """
+    @after_samples.setter
+    def after_samples(self, value: int) -> None: ...
+    @property
+    def before_samples(self) -> int:
+        """
+        [sample] of the window, 0 to 1000
+        """
+    @before_samples.setter
+    def before_samples(self, value: int) -> None: ...
+    @property
+    def fraction(self) -> float:
+        """
+        of the window's largest envelope, in (0, 1)
+        """
+    @fraction.setter
+    def fraction(self, value: float) -> None: ...
+
+class LeadingEdge:
+    """
+    Moves traces to the beginning of their echoes.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: LeadingEdgeConfig) -> Status: ...
+    def process(
+        self, envelope: numpy.typing.NDArray[numpy.float32], traces: numpy.typing.NDArray[numpy.void]
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, traces): envelope (n_samples,) [count]; traces as of TargetTracer.
         """
 
 class Point:

@@ -6,6 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from echofuse import _core
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.simulation.through_wall import simulate_through_wall
+from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
+from echofuse.simulation.wall import refracted
 
 OK, INVALID = _core.Status.ok, _core.Status.invalid_input
 
@@ -125,3 +129,71 @@ def test_inputs_of_the_wrong_length_are_refused() -> None:
 )  # fmt: skip
 def test_an_impossible_value_is_named(kind: str, field: str, value: float) -> None:
     assert getattr(_core, kind)(**{field: value}).invalid_field() == field
+
+
+def test_a_leading_edge_is_a_fraction_of_its_largest_value_high() -> None:
+    envelope = np.full(60, 0.25, np.float32)
+    envelope[20:30] = [1, 2, 3, 4, 5, 6, 7, 8, 4, 2]
+    stage = _core.LeadingEdge()
+    traces = traced(np.arange(60) >= 22)[:1]
+    assert stage.process(envelope, traces)[0] == _core.Status.not_configured
+    for fraction, expected in ((0.5, 23.0), (0.4375, 22.5), (0.0625, 19.0 + 0.25 / 0.75)):
+        assert stage.configure(_core.LeadingEdgeConfig(fraction=fraction)) == OK
+        assert stage.process(envelope, traces)[1]["toa_samples"] == pytest.approx([expected])
+    assert stage.configure(_core.LeadingEdgeConfig(fraction=0.01)) == OK
+    assert stage.process(envelope, traces)[1]["toa_samples"] == [18.0]  # the window's first sample
+    np.testing.assert_array_equal(stage.process(np.zeros(60, np.float32), traces)[1], traces)
+    np.testing.assert_array_equal(stage.process(envelope[:10], traces)[1], traces)
+
+
+def test_two_receivers_differ_by_half_as_much_at_leading_edges() -> None:
+    """One person, 30 s, median error of the difference between two receivers' paths [m]."""
+    scene = through_wall_scene()
+    run = simulate_through_wall(scene, case_study_walkers(1), seed=3, duration_s=30.0)
+    position_m = run.truth[0].position_m
+
+    def leg_m(x_m: float):  # type: ignore[no-untyped-def]
+        across, air = np.abs(position_m[:, 0] - x_m), position_m[:, 1] - scene.wall.thickness_m
+        return refracted(scene.wall, across, air).delay_s * SPEED_OF_LIGHT_MPS
+
+    error_m = np.full((2, 2, len(position_m)), np.nan)  # (receiver, hits or edge, response)
+    for receiver, node in enumerate(run.nodes):
+        true_m = leg_m(0.0) + leg_m(float(node.rx_position_m[0]))
+        for index, (delays, edges) in enumerate(_traces(node.scans)):
+            offset = delays / scene.radar.clock_hz * SPEED_OF_LIGHT_MPS - true_m[index]
+            if len(offset):
+                best = np.argmin(np.abs(offset + 0.45))  # the front of a body lies before its middle
+                edge_m = edges[best] / scene.radar.clock_hz * SPEED_OF_LIGHT_MPS
+                error_m[receiver, :, index] = offset[best], edge_m - true_m[index]
+    apart = np.abs(error_m[0] - error_m[1])[:, np.all(np.abs(error_m[:, 0] + 0.45) < 0.6, axis=0)]
+    hits_m, edges_m = np.median(apart, axis=1)
+    assert apart.shape[1] > 250
+    assert edges_m < 0.65 * hits_m  # 0.39 to 0.57 of it in seeds 0 to 5
+    assert edges_m < 0.04  # 0.023 to 0.036
+
+
+def _traces(scans):  # type: ignore[no-untyped-def]
+    """Each response's delays by hits, and by leading edges [sample]."""
+    time_zero, enhancer, detector = (
+        _core.TimeZeroFinder(), _core.WeakSignalEnhancer(), _core.GaussianCfarDetector(),
+    )  # fmt: skip
+    envelope, tracer, edge = _core.Envelope(), _core.TargetTracer(), _core.LeadingEdge()
+    n = scans.shape[1]
+    assert time_zero.configure(_core.TimeZeroConfig(), n, 6.0) == OK
+    assert enhancer.configure(_core.WeakSignalConfig(), n) == OK
+    assert detector.configure(_core.GaussianCfarConfig()) == OK
+    assert envelope.configure(_core.EnvelopeConfig(), 4.5e9) == OK
+    assert tracer.configure(_core.TargetTraceConfig()) == OK
+    assert edge.configure(_core.LeadingEdgeConfig()) == OK
+    average = None
+    for scan in scans:
+        _, place, response = time_zero.process(scan)
+        if not place.found:
+            yield np.zeros(0), np.zeros(0)
+            continue
+        average = response if average is None else np.float32(0.95) * average + np.float32(0.05) * response
+        rest = response - average
+        traces = tracer.process(detector.process(enhancer.process(rest)[1])[1])[1]
+        edges = edge.process(envelope.process(rest)[1], traces)[1]
+        late = detector.delay_samples() + place.fraction_samples
+        yield traces["toa_samples"] - late, edges["toa_samples"] - place.fraction_samples

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from echofuse import _core
 from echofuse.conformance.comparison import Scoreboard, as_reference
 from echofuse.reference.node.scan.gaussian_cfar import delay_samples, gaussian_cfar
+from echofuse.reference.node.scan.leading_edge import leading_edge
 from echofuse.reference.node.scan.target_traces import target_traces
 from echofuse.reference.node.scan.time_zero import TimeZero
 from echofuse.reference.node.scan.weak_signal import WeakSignal
@@ -138,3 +139,31 @@ def test_target_traces(window: int, least: int, density_correction: bool) -> Non
         n_traces += len(got)
     assert passed(board), board.as_json()
     assert n_traces > 60
+
+
+@pytest.mark.parametrize(("fraction", "before", "after"), [(0.5, 4, 13), (0.3, 0, 30), (0.9, 600, 0)])
+def test_leading_edge(fraction: float, before: int, after: int) -> None:
+    config = _core.LeadingEdgeConfig(fraction=fraction, before_samples=before, after_samples=after)
+    tracer, core, board, n_moved = _core.TargetTracer(), _core.LeadingEdge(), Scoreboard(), 0
+    assert tracer.configure(_core.TargetTraceConfig()) == core.configure(config) == _core.Status.ok
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        envelope = np.abs(rng.normal(0.0, 1.0, N_SAMPLES))
+        for begin in rng.integers(0, N_SAMPLES, 3):
+            envelope[begin : begin + 12] += rng.uniform(3.0, 30.0) * np.hanning(24)[:12][: N_SAMPLES - begin]
+        given = envelope.astype(np.float32)
+        _, traces = tracer.process((given > 2.5).astype(np.uint8))
+        status, got = core.process(given, traces)
+        assert status == _core.Status.ok
+        expected = leading_edge(
+            given.astype(np.float64), traces["toa_samples"].astype(np.float64), as_reference(config)
+        )
+        if expected.margin < 1e-5:
+            continue
+        np.testing.assert_array_equal(got["weight"], traces["weight"])
+        board.floats(
+            "toa", "detections", f"seed {seed}", got["toa_samples"], expected.toa_samples, "node.leading_edge"
+        )
+        n_moved += int(np.sum(got["toa_samples"] != traces["toa_samples"]))
+    assert passed(board), board.as_json()
+    assert n_moved > 60
