@@ -1629,8 +1629,8 @@ class GaussianCfarConfig:
         self,
         *,
         fast_factor: float = 0.3,
-        slow_factor: float = 0.02,
-        deviations: float = 1.0,
+        slow_factor: float = 0.01,
+        deviations: float = 0.7,
         spread: ClutterSpread = ...,
         starting_samples: int = 200,
     ) -> None: ...

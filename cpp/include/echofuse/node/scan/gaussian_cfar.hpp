@@ -14,8 +14,8 @@ enum class ClutterSpread : std::uint8_t {
 
 struct GaussianCfarConfig {
   float fast_factor = 0.3f;   ///< weight of a sample in the fast mean, in (0, 1]
-  float slow_factor = 0.02f;  ///< in the slow mean and spread, in (0, 1]
-  float deviations = 1.0f;    ///< of the slow spread by which the fast mean must exceed the slow one, > 0
+  float slow_factor = 0.01f;  ///< in the slow mean and spread, in (0, 1]
+  float deviations = 0.7f;    ///< of the slow spread by which the fast mean must exceed the slow one, > 0
   ClutterSpread spread = ClutterSpread::kStandardDeviation;
   int starting_samples = 200;  ///< [sample] over which the slow statistics run in before the first, >= 1
 };
