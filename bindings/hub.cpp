@@ -333,6 +333,7 @@ void bind_hub(py::module_& m) {
   bind_ellipse(m);
   bind_coverage(m);
   bind_hub_line(m);
+  bind_hub_array(m);
   bind_frame_assembler(m);
   bind_selection(m);
   bind_point_clusters(m);

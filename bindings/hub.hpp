@@ -5,6 +5,7 @@
 
 namespace echofuse::bindings {
 
+void bind_hub_array(py::module_& m);
 void bind_hub_line(py::module_& m);
 void bind_hub_pipeline(py::module_& m);
 

@@ -67,6 +67,9 @@ __all__: list[str] = [
     "PhdConfig",
     "PhdFilter",
     "PhdTracker",
+    "Planar3dFix",
+    "Planar3dMethod",
+    "Planar3dStatus",
     "Point",
     "PointClusterConfig",
     "PointClusters",
@@ -74,6 +77,7 @@ __all__: list[str] = [
     "PulseIntegratorConfig",
     "RangeClusterConfig",
     "RangeClusterer",
+    "RangeKind",
     "RangeTracker",
     "RangeTrackerConfig",
     "ResamplingChance",
@@ -91,6 +95,11 @@ __all__: list[str] = [
     "TAPS",
     "TargetTraceConfig",
     "TargetTracer",
+    "Taylor3d",
+    "Taylor3dConfig",
+    "Taylor3dFix",
+    "Taylor3dStart",
+    "Taylor3dStatus",
     "TimeZero",
     "TimeZeroConfig",
     "TimeZeroFinder",
@@ -123,6 +132,7 @@ __all__: list[str] = [
     "max_leg_product_m2",
     "node_registers",
     "path_length",
+    "planar_3d",
     "rectify",
     "snr",
     "snr_on_ellipse",
@@ -2446,6 +2456,270 @@ class LineLocator:
         (status, LineFix).
         """
 
+class Planar3dMethod:
+    """
+    Members:
+
+      three_d_two_d
+
+      approximate
+    """
+
+    __members__: typing.ClassVar[dict[str, Planar3dMethod]]
+    approximate: typing.ClassVar[Planar3dMethod]
+    three_d_two_d: typing.ClassVar[Planar3dMethod]
+    @typing.overload
+    def __eq__(self, other: Planar3dMethod) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Planar3dMethod) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Planar3dStatus:
+    """
+    Members:
+
+      fix
+
+      clipped
+
+      bad_path
+    """
+
+    __members__: typing.ClassVar[dict[str, Planar3dStatus]]
+    bad_path: typing.ClassVar[Planar3dStatus]
+    clipped: typing.ClassVar[Planar3dStatus]
+    fix: typing.ClassVar[Planar3dStatus]
+    @typing.overload
+    def __eq__(self, other: Planar3dStatus) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Planar3dStatus) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Planar3dFix:
+    @property
+    def position_m(self) -> tuple: ...
+    @property
+    def status(self) -> Planar3dStatus: ...
+
+class Taylor3dStart:
+    """
+    Members:
+
+      three_d_two_d
+
+      approximate
+
+      given
+    """
+
+    __members__: typing.ClassVar[dict[str, Taylor3dStart]]
+    approximate: typing.ClassVar[Taylor3dStart]
+    given: typing.ClassVar[Taylor3dStart]
+    three_d_two_d: typing.ClassVar[Taylor3dStart]
+    @typing.overload
+    def __eq__(self, other: Taylor3dStart) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Taylor3dStart) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class RangeKind:
+    """
+    Members:
+
+      bistatic
+
+      one_way
+    """
+
+    __members__: typing.ClassVar[dict[str, RangeKind]]
+    bistatic: typing.ClassVar[RangeKind]
+    one_way: typing.ClassVar[RangeKind]
+    @typing.overload
+    def __eq__(self, other: RangeKind) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: RangeKind) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Taylor3dStatus:
+    """
+    Members:
+
+      converged
+
+      diverging
+
+      iteration_limit
+
+      singular
+
+      no_start
+    """
+
+    __members__: typing.ClassVar[dict[str, Taylor3dStatus]]
+    converged: typing.ClassVar[Taylor3dStatus]
+    diverging: typing.ClassVar[Taylor3dStatus]
+    iteration_limit: typing.ClassVar[Taylor3dStatus]
+    no_start: typing.ClassVar[Taylor3dStatus]
+    singular: typing.ClassVar[Taylor3dStatus]
+    @typing.overload
+    def __eq__(self, other: Taylor3dStatus) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: Taylor3dStatus) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class Taylor3dConfig:
+    """
+    Position in space by the Taylor-series method.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    max_iterations: int
+    range_kind: RangeKind
+    start: Taylor3dStart
+    wall: WallConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> Taylor3dConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> Taylor3dConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        wall: WallConfig = ...,
+        start: Taylor3dStart = ...,
+        range_kind: RangeKind = ...,
+        min_step_m: float = 0.0001,
+        max_iterations: int = 20,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def min_step_m(self) -> float:
+        """
+        [m]
+        """
+    @min_step_m.setter
+    def min_step_m(self, value: float) -> None: ...
+
+class Taylor3dFix:
+    @property
+    def clipped_start(self) -> bool: ...
+    @property
+    def covariance_m2(self) -> tuple:
+        """
+        (xx, xy, xz, yy, yz, zz) [m^2]
+        """
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def position_m(self) -> tuple: ...
+    @property
+    def range_residual_m(self) -> float: ...
+    @property
+    def status(self) -> Taylor3dStatus: ...
+
+class Taylor3d:
+    def __init__(self) -> None: ...
+    def configure(
+        self,
+        config: Taylor3dConfig,
+        tx_m: numpy.typing.NDArray[numpy.float32],
+        rx_m: numpy.typing.NDArray[numpy.float32],
+    ) -> Status:
+        """
+        tx_m (3,), rx_m (n, 3) [m].
+        """
+    def process(
+        self,
+        range_m: numpy.typing.NDArray[numpy.float32],
+        variance_m2: numpy.typing.NDArray[numpy.float32],
+        given_m: numpy.typing.NDArray[numpy.float32],
+    ) -> tuple[Status, Taylor3dFix]:
+        """
+        (status, Taylor3dFix); given_m (3,) [m] counts only if the start is given.
+        """
+
 class FrameAssemblerConfig:
     """
     Lines up the nodes' reports.
@@ -3972,6 +4246,11 @@ def path_length(
     (path [m], its derivatives with respect to x and y).
     """
 
+def planar_3d(
+    method: Planar3dMethod,
+    spacing_m: typing.SupportsFloat | typing.SupportsIndex,
+    path_m: numpy.typing.NDArray[numpy.float32],
+) -> Planar3dFix: ...
 def rectify(samples: numpy.typing.NDArray[numpy.float32]) -> numpy.typing.NDArray[numpy.float32]:
     """
     Half-wave rectifier: a new array, negative values 0.

@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxDetectionsPerNode =
 // One frame, on the hub.
 inline constexpr std::size_t kMaxNodes = 16;  ///< one hub serves one site of up to 16 nodes
 inline constexpr std::size_t kMaxArrayReceivers =
-    4;  ///< of one handheld array; the papers' have 2 on a line, or 4 on a cross
+    8;  ///< of one array: the papers' have 2 or 4, a room's set of ranging anchors commonly 6 to 8
 inline constexpr std::size_t kMaxFrameHistory =
     8;  ///< frames that wait for late reports; 8 at 10 Hz is 0.8 s
 inline constexpr std::size_t kMaxTuplesPerFrame =

@@ -23,6 +23,16 @@ ROWS: dict[str, Tolerance] = {
         0.0, 1e-3, "a path of 16 m carries 1e-6 m in float32, times up to 500 across range for a 0.4 m array"
     ),
     "hub.line.covariance": Tolerance(2e-3, 0.0, "differences of unit vectors of 0.05 in float32, squared"),
+    "hub.planar_3d.position": Tolerance(
+        0.0, 1e-3, "a path of 14 m carries 1e-6 m in float32, times up to 500 across range for a 0.39 m cross"
+    ),
+    "hub.taylor_3d.position": Tolerance(
+        0.0, 1e-3, "as hub.planar_3d.position, and a step that stops at 0.1 mm more or less"
+    ),
+    "hub.taylor_3d.covariance": Tolerance(
+        1e-2, 0.0, "inverse of a 3 x 3 matrix of condition up to 1e4 in float32"
+    ),
+    "hub.taylor_3d.residual": Tolerance(0.0, 1e-5, "differences of two float32 paths of up to 14 m"),
     "hub.pairing.delay": Tolerance(1e-6, 0.0, "two products and a sum in float32"),
     "hub.selection.position": Tolerance(0.0, 1e-3, _FIX + "; a position far off the nodes' hull triples it"),
     "hub.selection.range_residual": Tolerance(1e-4, 1e-3, _FIX),

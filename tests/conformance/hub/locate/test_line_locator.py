@@ -90,7 +90,7 @@ def test_bad_input_is_refused():  # type: ignore[no-untyped-def]
     locator, config = _core.LineLocator(), _core.LineLocatorConfig()
     two, ones = np.array([-0.4, 0.4], np.float32), np.ones(2, np.float32)
     assert locator.process(ones, ones)[0] == _core.Status.not_configured
-    for line in ([0.4], [0.4, 0.4], [0.0, 0.4], [np.nan, 0.4], [1, 2, 3, 4, 5]):
+    for line in ([0.4], [0.4, 0.4], [0.0, 0.4], [np.nan, 0.4], range(1, 10)):
         assert locator.configure(config, np.array(line, np.float32)) == _core.Status.invalid_config
     assert locator.configure(config, two) == _core.Status.ok
     bad = [(ones[:1], ones), (ones * np.nan, ones), (ones, -ones), (ones, np.array([1, 0], np.float32))]
