@@ -2,6 +2,7 @@
 
 import re
 import runpy
+import sys
 from pathlib import Path
 
 import pytest
@@ -16,3 +17,18 @@ def test_sensor_radar(capsys: pytest.CaptureFixture[str]) -> None:
     assert error is not None
     assert float(error.group(1)) < 0.2
     assert len(re.findall(r"person 1 at", said)) > 20
+
+
+def test_taylor_series_3d(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    script = str(EXAMPLES / "taylor_series_3d.py")
+    monkeypatch.setattr(sys, "argv", [script, "2000"])
+    runpy.run_path(script, run_name="__main__")
+    rows = [line.split(" | ") for line in capsys.readouterr().out.splitlines() if line.startswith("| (")]
+    assert len(rows) == 12
+    for _, deviations, *cells in rows:
+        approximate, planar, _, refined, bound, diverging = (float(cell.strip(" |")) for cell in cells)
+        assert diverging == 0
+        assert refined == pytest.approx(bound, rel=0.06)
+        equal = len(set(deviations.split(", "))) == 1
+        assert planar == pytest.approx(refined, rel=0.01) if equal else planar > 1.1 * refined
+        assert approximate > 0.99 * planar
