@@ -42,6 +42,9 @@ class Wall {
   /// 1 cm of it, so a place within the wall is taken as just behind it.
   WallRay ray(float lateral_m, float depth_m) const;
 
+  /// [m] excess of one way at normal incidence, w (sqrt(e) - 1); 0 without compensation.
+  float normal_excess_m() const;
+
   const WallConfig& config() const { return config_; }
 
  private:

@@ -81,12 +81,9 @@ Status LineLocator::process(Span<const float> path_m, Span<const float> weight, 
 }
 
 LineFix LineLocator::behind_wall(float path1_m, float path2_m, float rx1_x_m, float rx2_x_m) const {
-  const WallConfig& wall = wall_.config();
-  float excess_m = 0.0f;
-  if (wall.compensation != WallCompensation::kNone)
-    excess_m = 2.0f * wall.thickness_m * (std::sqrt(wall.relative_permittivity) - 1.0f);
+  const float excess_m = 2.0f * wall_.normal_excess_m();
   LineFix fix = two_ellipses(path1_m - excess_m, path2_m - excess_m, rx1_x_m, rx2_x_m);
-  if (wall.compensation != WallCompensation::kSecondKind) return fix;
+  if (wall_.config().compensation != WallCompensation::kSecondKind) return fix;
   for (int iteration = 1; iteration <= kMaxIterations && fix.status == LineFixStatus::kFix; ++iteration) {
     const Point at = fix.position;
     const float tx_excess_m = wall_.ray(std::abs(at.x_m), at.y_m).excess_m;

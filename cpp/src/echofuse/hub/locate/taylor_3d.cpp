@@ -110,10 +110,7 @@ Status Taylor3d::read(Span<const float> range_m, Span<const float> variance_m2, 
 bool Taylor3d::start(const Ranges& ranges, const Point3& given, Taylor3dFix& fix) const {
   fix.position = given;
   if (config_.start != Taylor3dStart::kGiven) {
-    const WallConfig& wall = config_.wall;
-    float excess_m = 0.0f;
-    if (wall.compensation != WallCompensation::kNone)
-      excess_m = 2.0f * wall.thickness_m * (std::sqrt(wall.relative_permittivity) - 1.0f);
+    const float excess_m = 2.0f * wall_.normal_excess_m();
     std::array<float, 4> path_m;
     for (std::size_t i = 0; i < 4; ++i) {
       if (ranges.weight[i] == 0.0f) return false;

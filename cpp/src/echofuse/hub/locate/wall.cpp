@@ -33,8 +33,7 @@ WallRay Wall::ray(float lateral_m, float depth_m) const {
   const float e = config_.relative_permittivity;
   if (config_.compensation != WallCompensation::kSecondKind || w == 0.0f) {
     const float straight = hypotenuse(lateral_m, depth_m);
-    const bool delayed = config_.compensation == WallCompensation::kFirstKind;
-    return {delayed ? w * (std::sqrt(e) - 1.0f) : 0.0f, lateral_m / straight, depth_m / straight};
+    return {normal_excess_m(), lateral_m / straight, depth_m / straight};
   }
   const float air = std::max(depth_m - w, kMinAir_m);
   float q = lateral_m / (air + w / std::sqrt(e));
@@ -49,6 +48,11 @@ WallRay Wall::ray(float lateral_m, float depth_m) const {
   const float p = q / secant;
   const float optical = p * lateral_m + air / secant + w * std::sqrt(e - p * p);
   return {optical - hypotenuse(lateral_m, air + w), p, 1.0f / secant};
+}
+
+float Wall::normal_excess_m() const {
+  if (config_.compensation == WallCompensation::kNone) return 0.0f;
+  return config_.thickness_m * (std::sqrt(config_.relative_permittivity) - 1.0f);
 }
 
 }  // namespace echofuse::hub

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from echofuse.reference.hub.locate.wall import Ray, WallConfig, ray
+from echofuse.reference.hub.locate.wall import Ray, WallConfig, normal_excess_m, ray
 
 Array = NDArray[np.float64]
 
@@ -78,9 +78,7 @@ def path_and_gradient(wall: WallConfig, position_m: Array, rx_x_m: Array) -> tup
 
 def behind_wall(wall: WallConfig, path_m: Array, rx_x_m: Array) -> LineFix:
     """Intersect two ellipses of the paths less the wall's delay at the last fix, until it stays."""
-    thickness = wall.thickness_m if wall.compensation != "none" else 0.0
-    normal = thickness * (np.sqrt(wall.relative_permittivity) - 1.0)
-    fix = two_ellipses(path_m - 2.0 * normal, rx_x_m)
+    fix = two_ellipses(path_m - 2.0 * normal_excess_m(wall), rx_x_m)
     margin = fix.margin
     if wall.compensation != "second_kind":
         return fix

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.reference.hub.locate.planar_3d import MIN_DEPTH_M, planar_3d
-from echofuse.reference.hub.locate.wall import WallConfig, ray
+from echofuse.reference.hub.locate.wall import WallConfig, normal_excess_m, ray
 
 Array = NDArray[np.float64]
 
@@ -81,9 +81,7 @@ def initial(config: Taylor3dConfig, rx_m: Array, range_m: Array, given_m: Array)
     """Step 0: the start (3,) [m], by the cross of the first four receivers unless it is given."""
     if config.start == "given":
         return given_m
-    wall = config.wall
-    normal = wall.thickness_m * (np.sqrt(wall.relative_permittivity) - 1.0)
-    excess = 2.0 * normal if wall.compensation != "none" else 0.0
+    excess = 2.0 * normal_excess_m(config.wall)
     return planar_3d(config.start, float(rx_m[1, 0]), range_m[:4] - excess).position_m
 
 

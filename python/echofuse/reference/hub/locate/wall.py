@@ -30,6 +30,13 @@ def sine_in_air(thickness_m: float, relative_permittivity: float, lateral_m: flo
     return low
 
 
+def normal_excess_m(config: WallConfig) -> float:
+    """Excess of one way at normal incidence [m]; 0 without compensation."""
+    if config.compensation == "none":
+        return 0.0
+    return float(config.thickness_m * (np.sqrt(config.relative_permittivity) - 1.0))
+
+
 def ray(config: WallConfig, lateral_m: float, depth_m: float) -> Ray:
     """Return the ray over ``lateral_m`` >= 0 along the wall and ``depth_m`` > 0 across it.
 
@@ -38,10 +45,8 @@ def ray(config: WallConfig, lateral_m: float, depth_m: float) -> Ray:
     straight = float(np.hypot(lateral_m, depth_m))
     direction = np.array([lateral_m, depth_m]) / straight
     w, permittivity = config.thickness_m, config.relative_permittivity
-    if config.compensation == "none" or w == 0.0:
-        return Ray(straight, 0.0, direction)
-    if config.compensation == "first_kind":
-        excess = w * (np.sqrt(permittivity) - 1.0)
+    if config.compensation != "second_kind" or w == 0.0:
+        excess = normal_excess_m(config)
         return Ray(straight + excess, excess, direction)
     air = max(depth_m - w, MIN_AIR_M)
     p = sine_in_air(w, permittivity, lateral_m, air)
