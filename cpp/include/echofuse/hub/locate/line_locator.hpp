@@ -55,8 +55,6 @@ class LineLocator {
   /// geometry says is in fix.status, with kOk.
   Status process(Span<const float> path_m, Span<const float> weight, LineFix& fix) const;
 
-  const Wall& wall() const { return wall_; }
-
  private:
   struct Paths {
     std::array<float, kMaxArrayReceivers> rx_x_m, path_m, weight;

@@ -37,16 +37,6 @@ bool is_cross(const Point3& tx, Span<const Point3> rx) {
          same(rx[3], {0.0f, 0.0f, d}, tolerance);
 }
 
-}  // namespace
-
-struct Taylor3d::Information {
-  Matrix3 matrix = Matrix3::Zero();    ///< A^T W A
-  Vector3 gradient = Vector3::Zero();  ///< A^T W D
-  float squares_m2 = 0.0f;             ///< D^T D
-};
-
-namespace {
-
 /// False when the matrix is singular to float32, or not finite.
 bool factor(const Matrix3& matrix, Eigen::LLT<Matrix3>& cholesky) {
   cholesky.compute(matrix);
@@ -59,6 +49,12 @@ bool factor(const Matrix3& matrix, Eigen::LLT<Matrix3>& cholesky) {
 }
 
 }  // namespace
+
+struct Taylor3d::Information {
+  Matrix3 matrix = Matrix3::Zero();    ///< A^T W A
+  Vector3 gradient = Vector3::Zero();  ///< A^T W D
+  float squares_m2 = 0.0f;             ///< D^T D
+};
 
 const char* invalid_field(const Taylor3dConfig& config) {
   if (invalid_field(config.wall) != nullptr) return "wall";
@@ -196,10 +192,9 @@ Status Taylor3d::process(Span<const float> range_m, Span<const float> variance_m
     if (in_plane_) fix.position.y_m = std::max(fix.position.y_m, kMinDepth3d_m);
     previous_m = length_m;
     ++fix.iterations;
-    stopped = length_m <= config_.min_step_m || fix.iterations == config_.max_iterations;
-    if (stopped)
-      fix.status =
-          length_m <= config_.min_step_m ? Taylor3dStatus::kConverged : Taylor3dStatus::kIterationLimit;
+    const bool converged = length_m <= config_.min_step_m;
+    stopped = converged || fix.iterations == config_.max_iterations;
+    if (stopped) fix.status = converged ? Taylor3dStatus::kConverged : Taylor3dStatus::kIterationLimit;
   }
   for (int column = 0, at = 0; column < 3; ++column) {
     const Vector3 solved = cholesky.solve(Vector3(Vector3::Unit(column)));

@@ -92,26 +92,21 @@ TimeZeroFinder::CrossTalk TimeZeroFinder::cross_talk(Span<const float> response)
   int first_strong = -1;  // of all, for the rest before it reaches around the end
   int last_strong = -1;
   int longest_rest = -1;
-  const auto rested = [&](int sample, int rest) {
-    if (rest <= longest_rest) return;
-    longest_rest = rest;
-    found.sample = sample;
-  };
   for (int k = 0; k < n_samples_; ++k) {
     const float a = amplitude(k);
     if (!(a >= level && a > amplitude(k - 1) && a >= amplitude(k + 1))) continue;
-    if (first_strong < 0)
+    const int rest = k - last_strong - 1;
+    if (first_strong < 0) {
       first_strong = k;
-    else
-      rested(k, k - last_strong - 1);
+    } else if (rest > longest_rest) {
+      longest_rest = rest;
+      found.sample = k;
+    }
     last_strong = k;
   }
   if (first_strong < 0) return found;
   const int around = (first_strong - last_strong - 1 + n_samples_) % n_samples_;
-  if (around >= longest_rest) {  // of equals the first
-    longest_rest = around;
-    found.sample = first_strong;
-  }
+  if (around >= longest_rest) found.sample = first_strong;  // of equals the first
   found.found = true;
   const float left = amplitude(found.sample - 1);
   const float right = amplitude(found.sample + 1);
