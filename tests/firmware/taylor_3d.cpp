@@ -1,4 +1,4 @@
-/// Counts the instructions of one Taylor-series fix, as test_taylor_3d.py builds and runs it: a line "INSTRUCTIONS ITERATIONS
+/// Counts the instructions of one Taylor-series fix, as test_taylor_3d.py runs it: a line "INSTRUCTIONS ITERATIONS
 /// STATUS" for every wall, start and number of receivers, and at last the bytes of stack.
 
 #include "echofuse/hub/locate/taylor_3d.hpp"
