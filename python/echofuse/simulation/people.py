@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -51,17 +52,43 @@ class Person:
         """Of the torso."""
         return 2.0 * _half_axes(self.radius_m)[1]
 
+    @property
+    def leg_m(self) -> float:
+        """From hip to sole, in which Boulic et al. 1990 measure speed and stride."""
+        return 0.491 * self.height_m
+
     def gait_cycles(self, time_s: float) -> float:
         """Cycles of two steps since the start, and the phase then; stride as Boulic et al. 1990."""
-        leg_m = 0.491 * self.height_m
-        nominal_hz = self.walk.speed_mps / leg_m
-        stride_m = 1.346 * math.sqrt(nominal_hz) * leg_m
+        nominal_hz = self.walk.speed_mps / self.leg_m
+        stride_m = 1.346 * math.sqrt(nominal_hz) * self.leg_m
         return self.gait_phase + float(self.walk.distance_m(time_s)) / stride_m
 
     def position_m(self, time_s: Array) -> Array:
         """time_s (n,) -> (n, 3)."""
         ground = self.walk.position_m(time_s)
         return np.column_stack([ground, np.full(len(ground), self.centre_height_m)])
+
+
+def walkers(
+    walks: Sequence[Walk], heights_m: Sequence[float], count: int, *, radius_m: float = Person.radius_m
+) -> tuple[Person, ...]:
+    """The first `count` of a scene's people, ids from 1.
+
+    The first one's cross section is a Person's, the others' go with the square of their height.
+    """
+    if not 0 <= count <= len(walks):
+        raise ValueError(f"count: {count}, expected 0 to {len(walks)}")
+    return tuple(
+        Person(
+            person_id=index + 1,
+            walk=walk,
+            height_m=height_m,
+            radius_m=radius_m,
+            rcs_m2=Person.rcs_m2 * (height_m / heights_m[0]) ** 2,
+            gait_phase=0.23 * index,
+        )
+        for index, (walk, height_m) in enumerate(zip(walks[:count], heights_m, strict=False))
+    )
 
 
 class Scatterers(NamedTuple):
@@ -166,7 +193,7 @@ class Body:
         """(n, 3) in the body's own frame, origin on the ground under the centre; roughness not included."""
         person = self.person
         phase = person.gait_cycles(time_s)
-        speed_hz = speed_mps / (0.491 * person.height_m)
+        speed_hz = speed_mps / person.leg_m
         trunk, limbs = self._trunk(time_s), []
         for limb in (_arm, _leg):
             for side, shift in ((-1.0, 0.0), (1.0, 0.5)):  # right, left

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.recording import NodeRecording, PersonTruth, Pulse, Recording
-from echofuse.simulation.people import Body, Person
+from echofuse.simulation.people import Body, Person, walkers
 from echofuse.simulation.propagation import (
     Obstacle,
     Paths,
@@ -205,15 +205,4 @@ CASE_STUDY_HEIGHTS_M = (1.85, 1.72, 1.65, 1.78, 1.90)
 
 def case_study_people(count: int = 1) -> tuple[Person, ...]:
     """The paper's person and up to four others, all walking throughout."""
-    if not 0 <= count <= len(CASE_STUDY_WALKS):
-        raise ValueError(f"count: {count}, expected 0 to {len(CASE_STUDY_WALKS)}")
-    return tuple(
-        Person(
-            person_id=index + 1,
-            walk=CASE_STUDY_WALKS[index],
-            height_m=height_m,
-            rcs_m2=0.8 * (height_m / 1.85) ** 2,
-            gait_phase=0.23 * index,
-        )
-        for index, height_m in enumerate(CASE_STUDY_HEIGHTS_M[:count])
-    )
+    return walkers(CASE_STUDY_WALKS, CASE_STUDY_HEIGHTS_M, count)

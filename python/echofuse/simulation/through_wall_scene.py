@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 from echofuse.simulation.m_sequence import MSequenceRadar
-from echofuse.simulation.people import Person
+from echofuse.simulation.people import Person, walkers
 from echofuse.simulation.scene import Furniture, Point, RadarNode, Room, rough_walls
 from echofuse.simulation.walk import Walk
 from echofuse.simulation.wall import Wall
@@ -137,21 +136,8 @@ CASE_STUDY_WALKS = (
 )
 CASE_STUDY_HEIGHTS_M = (1.82, 1.76, 1.68, 1.90)
 BODY_RADIUS_M = 0.2  # torso of 32 cm by 48 cm, a stride of 70 cm: the paper's 30 cm by 70 cm
-BODY_RCS_M2 = 0.8  # of 1.82 m; in proportion to the height's square
 
 
 def case_study_walkers(count: int = 2) -> tuple[Person, ...]:
     """The paper's two people, or up to two more, all walking throughout."""
-    if not 0 <= count <= len(CASE_STUDY_WALKS):
-        raise ValueError(f"count: {count}, expected 0 to {len(CASE_STUDY_WALKS)}")
-    return tuple(
-        Person(
-            person_id=index + 1,
-            walk=CASE_STUDY_WALKS[index],
-            height_m=height_m,
-            radius_m=BODY_RADIUS_M,
-            rcs_m2=BODY_RCS_M2 * (height_m / CASE_STUDY_HEIGHTS_M[0]) ** 2,
-            gait_phase=math.fmod(0.23 * index, 1.0),
-        )
-        for index, height_m in enumerate(CASE_STUDY_HEIGHTS_M[:count])
-    )
+    return walkers(CASE_STUDY_WALKS, CASE_STUDY_HEIGHTS_M, count, radius_m=BODY_RADIUS_M)
