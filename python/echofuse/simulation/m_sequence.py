@@ -96,12 +96,12 @@ class MSequenceFrontend:
         chip = np.sinc(self.frequency_hz / radar.clock_hz)
         shape = np.abs(self._sequence) ** 2 * chip * low_pass * high_pass
         peak = (shape[0] + 2.0 * np.sum(shape[1:])) / n
-        self._system = radar.count_at_unit_gain / peak * shape
+        late = np.exp(-2j * np.pi * self.frequency_hz * radar.group_delay_s)
+        self._system = radar.count_at_unit_gain / peak * shape * late
 
     def receive(self, channel: Spectrum) -> Array:
         """Noise-free response (n_samples,) [count] of a channel (n_bins,) of gains; sample 0: no delay."""
-        late = np.exp(-2j * np.pi * self.frequency_hz * self.radar.group_delay_s)
-        return np.asarray(np.fft.irfft(channel * self._system * late, self.radar.n_samples))
+        return np.asarray(np.fft.irfft(channel * self._system, self.radar.n_samples))
 
     def noise(self, rng: np.random.Generator) -> Array:
         """(n_samples,) [count]: white noise of the receiver, after the correlation."""
