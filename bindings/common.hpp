@@ -38,6 +38,7 @@ void bind_signal(py::module_& m);
 void bind_estimation(py::module_& m);
 void bind_node(py::module_& m);
 void bind_node_through_wall(py::module_& m);
+void bind_node_through_wall_pipeline(py::module_& m);
 void bind_hub(py::module_& m);
 void bind_link(py::module_& m);
 

@@ -205,6 +205,9 @@ void bind_link(py::module_& m) {
       "node_registers", [] { return register_names(node::config_registers()); },
       "Names of a node's configuration on the link.");
   m.def(
+      "through_wall_node_registers", [] { return register_names(node::through_wall_registers()); },
+      "Names of a through-wall node's configuration on the link.");
+  m.def(
       "hub_registers", [] { return register_names(hub::config_registers()); },
       "Names of a hub's configuration on the link; '#' stands for the index of a node.");
 }

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
   echofuse::bindings::bind_estimation(m);
   echofuse::bindings::bind_node(m);
   echofuse::bindings::bind_node_through_wall(m);
+  echofuse::bindings::bind_node_through_wall_pipeline(m);
   echofuse::bindings::bind_hub(m);
   echofuse::bindings::bind_link(m);
 }

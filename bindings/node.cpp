@@ -3,25 +3,12 @@
 #include <string>
 
 #include "common.hpp"
-#include "taps.hpp"
+#include "node_pipeline.hpp"
 
 namespace echofuse::bindings {
 namespace {
 
 using namespace echofuse::node;
-
-/// link::Detection as the rows of a structured array.
-struct DetectionRow {
-  float delay_s;
-  float weight;
-};
-
-py::array_t<DetectionRow> rows(const link::Detections& report) {
-  py::array_t<DetectionRow> array(static_cast<py::ssize_t>(report.detections.size()));
-  DetectionRow* row = array.mutable_data();
-  for (const link::Detection& detection : report.detections) *row++ = {detection.delay_s, detection.weight};
-  return array;
-}
 
 void bind_pulse_integrator(py::module_& m) {
   ConfigBinder<PulseIntegratorConfig>(m, "PulseIntegratorConfig", "Coherent integration of pulses.")
@@ -246,8 +233,8 @@ void bind_node_config(py::module_& m) {
 
 void bind_sensor_radar_node(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(DetectionRow, delay_s, weight);
-  py::class_<SensorRadarNode>(m, "SensorRadarNode", "Raw scans in, delays of echoes from people out.")
-      .def(py::init<>())
+  py::class_<SensorRadarNode> node(m, "SensorRadarNode", "Raw scans in, delays of echoes from people out.");
+  node.def(py::init<>())
       .def("configure", &SensorRadarNode::configure, py::arg("config"))
       .def("reset", &SensorRadarNode::reset)
       .def(
@@ -257,28 +244,10 @@ void bind_sensor_radar_node(py::module_& m) {
           },
           py::arg("scan").noconvert(),
           "scan (n_samples,) [count] of the empty room, averaged into the background")
-      .def(
-          "process",
-          [](SensorRadarNode& self, const FloatArray& scan, std::int64_t time_us) {
-            link::Detections report;
-            const Status status = self.process(as_span(scan, "scan"), time_us, report);
-            return py::make_tuple(status, rows(report));
-          },
-          py::arg("scan").noconvert(), py::arg("time_us"),
-          "(status, detections): scan (n_samples,) [count]; detections is structured, delay_s and weight.")
-      .def(
-          "process_with_taps",
-          [](SensorRadarNode& self, const FloatArray& scan, std::int64_t time_us) {
-            link::Detections report;
-            py::dict taps;
-            const TapGuard guard(self, taps);
-            const Status status = self.process(as_span(scan, "scan"), time_us, report);
-            return py::make_tuple(status, rows(report), taps);
-          },
-          py::arg("scan").noconvert(), py::arg("time_us"), "(status, detections, taps by name).")
       .def("report_ready", &SensorRadarNode::report_ready, "the last process() completed a scan")
       .def("ready", &SensorRadarNode::ready, "the background is known")
       .def("counters", &counters, "What happened since configure(), by name.");
+  bind_process(node, "scan");
   m.attr("SENSOR_RADAR_NODE_BYTES") = sizeof(SensorRadarNode);
 }
 

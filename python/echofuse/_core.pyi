@@ -93,6 +93,7 @@ __all__: list[str] = [
     "SensorRadarNodeConfig",
     "Status",
     "TAPS",
+    "THROUGH_WALL_NODE_BYTES",
     "TargetTraceConfig",
     "TargetTracer",
     "Taylor3d",
@@ -100,6 +101,8 @@ __all__: list[str] = [
     "Taylor3dFix",
     "Taylor3dStart",
     "Taylor3dStatus",
+    "ThroughWallNode",
+    "ThroughWallNodeConfig",
     "TimeZero",
     "TimeZeroConfig",
     "TimeZeroFinder",
@@ -138,6 +141,7 @@ __all__: list[str] = [
     "snr_on_ellipse",
     "sum_on_cassini_m",
     "systematic_resample",
+    "through_wall_node_registers",
     "time_of_arrival_s",
     "two_ellipses",
     "write_frame",
@@ -1392,7 +1396,7 @@ class SensorRadarNode:
         self, scan: numpy.typing.NDArray[numpy.float32], time_us: typing.SupportsInt | typing.SupportsIndex
     ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
         """
-        (status, detections): scan (n_samples,) [count]; detections is structured, delay_s and weight.
+        (status, detections): what comes in (n_samples,) [count]; detections is structured, delay_s and weight.
         """
     def process_with_taps(
         self, scan: numpy.typing.NDArray[numpy.float32], time_us: typing.SupportsInt | typing.SupportsIndex
@@ -1815,6 +1819,152 @@ class LeadingEdge:
         """
         (status, traces): envelope (n_samples,) [count]; traces as of TargetTracer.
         """
+
+class ThroughWallNodeConfig:
+    """
+    A receiver of the pipeline through_wall_2d.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    clutter: ClutterConfig
+    envelope: EnvelopeConfig
+    gaussian_cfar: GaussianCfarConfig
+    leading_edge: LeadingEdgeConfig
+    target_traces: TargetTraceConfig
+    time_zero: TimeZeroConfig
+    weak_signal: WeakSignalConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> ThroughWallNodeConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> ThroughWallNodeConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        node_id: int = 0,
+        n_samples: int = 511,
+        sample_rate_hz: float = 4500000000.0,
+        baseline_m: float = 0.4,
+        delay_offset_s: float = 0.0,
+        blind_zone_s: float = 2.7e-09,
+        max_delay_s: float = 0.0,
+        full_scale_count: float = 0.0,
+        saturated_samples: int = 2,
+        time_zero: TimeZeroConfig = ...,
+        clutter: ClutterConfig = ...,
+        envelope: EnvelopeConfig = ...,
+        weak_signal: WeakSignalConfig = ...,
+        gaussian_cfar: GaussianCfarConfig = ...,
+        target_traces: TargetTraceConfig = ...,
+        leading_edge: LeadingEdgeConfig = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def baseline_m(self) -> float:
+        """
+        [m] transmitter to receiver
+        """
+    @baseline_m.setter
+    def baseline_m(self, value: float) -> None: ...
+    @property
+    def blind_zone_s(self) -> float:
+        """
+        [s] after the cross-talk's delay: not reported, >= 0
+        """
+    @blind_zone_s.setter
+    def blind_zone_s(self, value: float) -> None: ...
+    @property
+    def delay_offset_s(self) -> float:
+        """
+        [s] calibration, added to every delay
+        """
+    @delay_offset_s.setter
+    def delay_offset_s(self, value: float) -> None: ...
+    @property
+    def full_scale_count(self) -> float:
+        """
+        [count] of a saturated sample; 0: not known
+        """
+    @full_scale_count.setter
+    def full_scale_count(self, value: float) -> None: ...
+    @property
+    def max_delay_s(self) -> float:
+        """
+        [s] what begins later is not reported; 0: all is
+        """
+    @max_delay_s.setter
+    def max_delay_s(self, value: float) -> None: ...
+    @property
+    def n_samples(self) -> int:
+        """
+        [sample] of a response
+        """
+    @n_samples.setter
+    def n_samples(self, value: int) -> None: ...
+    @property
+    def node_id(self) -> int:
+        """
+        >= 0
+        """
+    @node_id.setter
+    def node_id(self, value: int) -> None: ...
+    @property
+    def sample_rate_hz(self) -> float:
+        """
+        [Hz] the sequence's clock
+        """
+    @sample_rate_hz.setter
+    def sample_rate_hz(self, value: float) -> None: ...
+    @property
+    def saturated_samples(self) -> int:
+        """
+        [sample] of a trusted response, >= 0
+        """
+    @saturated_samples.setter
+    def saturated_samples(self, value: int) -> None: ...
+
+class ThroughWallNode:
+    """
+    One receiver's responses in, delays of echoes from people out.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: ThroughWallNodeConfig) -> Status: ...
+    def counters(self) -> dict:
+        """
+        What happened since configure(), by name.
+        """
+    def process(
+        self,
+        response: numpy.typing.NDArray[numpy.float32],
+        time_us: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, detections): what comes in (n_samples,) [count]; detections is structured, delay_s and weight.
+        """
+    def process_with_taps(
+        self,
+        response: numpy.typing.NDArray[numpy.float32],
+        time_us: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void], dict]:
+        """
+        (status, detections, taps by name).
+        """
+    def ready(self) -> bool:
+        """
+        time zero and background are known
+        """
+    def report_ready(self) -> bool:
+        """
+        the last process() gave a report
+        """
+    def reset(self) -> None: ...
 
 class Point:
     """
@@ -4282,6 +4432,11 @@ def systematic_resample(
     (status, indices (n_out,)).
     """
 
+def through_wall_node_registers() -> list[str]:
+    """
+    Names of a through-wall node's configuration on the link.
+    """
+
 def time_of_arrival_s(
     to_tx_m: typing.SupportsFloat | typing.SupportsIndex, to_rx_m: typing.SupportsFloat | typing.SupportsIndex
 ) -> float: ...
@@ -4335,6 +4490,12 @@ TAPS: dict = {
     7: ("decisions", 0),
     8: ("range_clusters", 4),
     9: ("detections", 2),
+    10: ("time_zero", 0),
+    11: ("rotated", 0),
+    12: ("subtracted", 0),
+    13: ("enhanced", 0),
+    14: ("target_traces", 2),
+    15: ("leading_edges", 2),
     32: ("frame", 3),
     33: ("selected", 5),
     34: ("points", 4),
@@ -4344,3 +4505,4 @@ TAPS: dict = {
     38: ("peaks", 5),
     39: ("tracks", 7),
 }
+THROUGH_WALL_NODE_BYTES: int = 49200

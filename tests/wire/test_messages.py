@@ -156,4 +156,5 @@ def members(config: object, where: str = "") -> set[str]:
 
 def test_every_member_of_a_configuration_is_a_register() -> None:
     assert set(_core.node_registers()) == members(_core.SensorRadarNodeConfig()) - {"node_id"}
+    assert set(_core.through_wall_node_registers()) == members(_core.ThroughWallNodeConfig()) - {"node_id"}
     assert set(_core.hub_registers()) == members(_core.SensorRadarHubConfig())

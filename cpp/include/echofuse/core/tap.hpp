@@ -20,6 +20,13 @@ enum class TapId : std::uint8_t {
   kDecisions = 7,   ///< (n_samples,) 0 or 1
   kRangeClusters = 8,  ///< (n_clusters, 4) position [sample], weight, first, last sample
   kDetections = 9,     ///< (n_detections, 2) delay [s], weight
+  // node of an M-sequence radar, beside kScan, kEnvelope, kDecisions and kDetections
+  kTimeZero = 10,      ///< (3,) found [0/1], rotation [sample], fraction [sample]
+  kRotated = 11,       ///< (n_samples,) response turned to time zero [count]
+  kSubtracted = 12,    ///< (n_samples,) signed, after background subtraction [count]
+  kEnhanced = 13,      ///< (n_samples,) after weak-signal enhancement [1]
+  kTargetTraces = 14,  ///< (n_traces, 2) toa [sample], weight, as found in the decisions
+  kLeadingEdges = 15,  ///< (n_traces, 2) the same traces at their echoes' leading edges
   // hub
   kFrame = 32,      ///< (n_detections, 3) node index, path length [m], weight
   kSelected = 33,   ///< (n_measurements, 5) x [m], y [m], weight, residual, nodes

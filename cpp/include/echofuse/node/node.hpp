@@ -110,7 +110,6 @@ class SensorRadarNode {
   void tap_direct_path(const DirectPath& direct_path) const;
   void tap_alignment(const signal::Alignment& alignment) const;
   void tap_clusters(Span<const std::uint8_t> decisions);
-  void tap_report(const link::Detections& out) const;
   Span<float> cut(Scan& scan) { return {scan.data(), static_cast<std::size_t>(config_.n_samples)}; }
 
   bool configured_ = false;

@@ -5,16 +5,13 @@
 
 #include "echofuse/core/constants.hpp"
 #include "echofuse/core/magnitude.hpp"
+#include "echofuse/node/pipeline.hpp"
+#include "echofuse/node/scan/drop_lightest.hpp"
 
 namespace echofuse::node {
 namespace {
 
-constexpr float kMaxMagnitude = 1e12f;  ///< squares of what filters make of it, and their sums, stay finite
-constexpr float kMaxDelay = 1.0f;       ///< [s] a bound for what is measured in nanoseconds
-
 constexpr float kResembling = 0.9f;  ///< [1] correlation of a scan with the background that it belongs to
-
-bool within(float value, float low, float high) { return value >= low && value <= high; }  // false for NaN
 
 /// The stage's first configuration that cannot be, by name.
 const char* invalid_stage(const SensorRadarNodeConfig& config) {
@@ -48,12 +45,12 @@ const char* invalid_field(const SensorRadarNodeConfig& config) {
   if (config.node_id < 0) return "node_id";
   if (config.n_samples < 2 || config.n_samples > static_cast<int>(kMaxSamplesPerScan)) return "n_samples";
   if (!within(config.sample_rate_hz, 1.0f, 1e12f)) return "sample_rate_hz";
-  if (!within(config.first_sample_s, -kMaxDelay, kMaxDelay)) return "first_sample_s";
+  if (!within(config.first_sample_s, -kMaxDelay_s, kMaxDelay_s)) return "first_sample_s";
   if (!within(config.baseline_m, 0.0f, 1e6f)) return "baseline_m";
   if (config.time_zero != TimeZero::kDirectPath && config.time_zero != TimeZero::kRecorded)
     return "time_zero";
-  if (!within(config.delay_offset_s, -kMaxDelay, kMaxDelay)) return "delay_offset_s";
-  if (!within(config.blind_zone_s, 0.0f, kMaxDelay)) return "blind_zone_s";
+  if (!within(config.delay_offset_s, -kMaxDelay_s, kMaxDelay_s)) return "delay_offset_s";
+  if (!within(config.blind_zone_s, 0.0f, kMaxDelay_s)) return "blind_zone_s";
   const char* stage = invalid_stage(config);
   return stage != nullptr ? stage : invalid_together(config);
 }
@@ -119,10 +116,7 @@ Status SensorRadarNode::set_empty_room(Span<const float> scan) {
 }
 
 Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, link::Detections& out) {
-  out.detections.clear();
-  out.node_id = config_.node_id;
-  out.frame = frame_;
-  out.time_us = time_us;
+  begin_report(config_.node_id, frame_, time_us, out);
   report_ready_ = false;
   if (!configured_) return Status::kNotConfigured;
   if (!usable(scan)) {
@@ -160,7 +154,7 @@ Status SensorRadarNode::process(Span<const float> scan, std::int64_t time_us, li
   detect(reports ? usable_range(alignment.shift_samples) : Range{});
   taps_(TapId::kThreshold, cut(work_));
   const Status status = report(out);
-  tap_report(out);
+  tap_report(taps_, out);
   report_ready_ = true;
   ++frame_;
   return status;
@@ -319,17 +313,6 @@ void SensorRadarNode::tap_clusters(Span<const std::uint8_t> decisions) {
     work_[size++] = static_cast<float>(cluster.last_sample);
   }
   taps_(TapId::kRangeClusters, {work_.data(), size});
-}
-
-void SensorRadarNode::tap_report(const link::Detections& out) const {
-  if (!taps_.wants(TapId::kDetections)) return;
-  float rows[2 * kMaxDetectionsPerNode];
-  std::size_t size = 0;
-  for (const link::Detection& detection : out.detections) {
-    rows[size++] = detection.delay_s;
-    rows[size++] = detection.weight;
-  }
-  taps_(TapId::kDetections, {rows, size});
 }
 
 }  // namespace echofuse::node

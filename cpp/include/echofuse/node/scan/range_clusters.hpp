@@ -60,7 +60,4 @@ class RangeClusterer {
       starts_{};  ///< of each cluster in hits_, and the last one's end
 };
 
-/// Drops the lightest element, the last of equals.
-void drop_lightest(BoundedVector<RangeCluster>& clusters);
-
 }  // namespace echofuse::node

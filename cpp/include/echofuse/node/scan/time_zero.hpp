@@ -43,6 +43,9 @@ class TimeZeroFinder {
   /// response and rotated: (n_samples,) [count], not the same. rotated is all 0 where nothing was found.
   Status process(Span<const float> response, Span<float> rotated, TimeZeroResult& result);
 
+  /// [sample] the cross-talk's place in what is rotated, its fraction apart
+  int expected_samples() const { return expected_; }
+
  private:
   struct CrossTalk {
     bool found = false;

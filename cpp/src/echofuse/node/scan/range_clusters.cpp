@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "echofuse/node/scan/drop_lightest.hpp"
+
 namespace echofuse::node {
 namespace {
 
@@ -106,13 +108,6 @@ RangeCluster RangeClusterer::cluster(std::size_t index, Span<const float> amplit
                                ? leading_edge(found.first_sample, amplitude, threshold)
                                : static_cast<float>(median(begin, end));
   return found;
-}
-
-void drop_lightest(BoundedVector<RangeCluster>& clusters) {
-  std::size_t lightest = 0;
-  for (std::size_t i = 1; i < clusters.size(); ++i)
-    if (clusters[i].weight <= clusters[lightest].weight) lightest = i;
-  if (!clusters.empty()) clusters.erase_at(lightest);
 }
 
 }  // namespace echofuse::node
