@@ -5,12 +5,12 @@ from pathlib import Path
 
 __all__ = ["CASES", "conform"]
 
-CASES = ("sensor-radar",)
+CASES = ("sensor-radar", "through-wall")
 Progress = Callable[[Iterator[None], str, int], Iterator[None]]
 
 
 def conform(
-    cases: Sequence[str] = CASES,
+    cases: Sequence[str] = ("sensor-radar",),
     *,
     target: str = "inprocess",
     seeds: int | None = None,
@@ -27,11 +27,12 @@ def conform(
     cases
         Of `CASES`.
     target
-        "inprocess", "process" or "cortex-m7".
+        "inprocess", "process" or "cortex-m7"; "through-wall" on the first alone.
     seeds
         How many simulated inputs; by default 20, and 3 on the Cortex-M7.
     recording
-        A recording to compare on as well (with its site inside); by default the real walk, where it is there.
+        A recording of a sensor radar to compare on as well (with its site inside); by default the real walk,
+        where it is there.
     out
         Folder for ``conformance.json`` and ``tolerances.txt``.
     progress
@@ -42,6 +43,6 @@ def conform(
     for case in cases:
         if case not in CASES:
             raise InputError(problem("conform", case, f"a case of {', '.join(CASES)}"))
-    from echofuse.conformance.command import conform_sensor_radar
+    from echofuse.conformance.command import conform_cases
 
-    return conform_sensor_radar(target=target, seeds=seeds, recording=recording, out=out, progress=progress)
+    return conform_cases(cases, target=target, seeds=seeds, recording=recording, out=out, progress=progress)

@@ -112,6 +112,28 @@ NODE_CHOICES: tuple[Choice, ...] = (
     ),
 )
 
+THROUGH_WALL_NODE_CHOICES: tuple[Choice, ...] = (
+    Choice(name="default"),
+    *_one("max_delay_s", 3.3e-8),
+    *_one("time_zero.learning_responses", 4),
+    *_one("time_zero.moved_responses", 1),
+    *_one("clutter.method", "empty_room_scan", "empty_room_shadowed", "frame_difference"),
+    *_one("envelope.method", "square_low_pass"),
+    *_one("weak_signal.floor_factor", 0.0),
+    *_one("gaussian_cfar.spread", "rms"),
+    *_one("target_traces.density_correction", True),
+    *_one("leading_edge.fraction", 0.3),
+    Choice(
+        name="fewer hits, denser, blind longer",
+        settings={
+            "gaussian_cfar.deviations": 1.0,
+            "gaussian_cfar.slow_factor": 0.02,
+            "target_traces.density_correction": True,
+            "blind_zone_s": 1e-8,
+        },
+    ),
+)
+
 ALL_TUPLES: Settings = {"selection.method": "all_tuples"}
 TUPLES_OF_4: Settings = {
     **ALL_TUPLES,

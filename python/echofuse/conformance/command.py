@@ -1,12 +1,12 @@
-"""What `echofuse conform sensor-radar` does."""
+"""What `echofuse conform` does."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 
 from echofuse import recording as recordings
-from echofuse.conformance.sensor_radar import Plan, Scores, real_walk, steps
+from echofuse.conformance import sensor_radar, through_wall
 from echofuse.conformance.table import format_scores, format_tolerances, write_json
 from echofuse.conformance.target import ConformanceTarget, InProcessTarget
 from echofuse.display.progress import progress as bar
@@ -20,7 +20,8 @@ SEEDS = {"inprocess": 20, "cortex-m7": 3}
 Progress = Callable[[Iterator[None], str, int], Iterator[None]]
 
 
-def conform_sensor_radar(
+def conform_cases(
+    cases: Sequence[str],
     *,
     target: str,
     seeds: int | None,
@@ -29,11 +30,18 @@ def conform_sensor_radar(
     progress: Progress | None = None,
 ) -> bool:
     """Compare, print and write; see `echofuse.conformance.conform`."""
-    walk, about_walk = _recording(recording)
+    if recording is not None and "sensor-radar" not in cases:
+        raise InputError(problem("--recording", "", "the case sensor-radar beside it"))
+    walk, about_walk = _recording(recording) if "sensor-radar" in cases else (None, "no recording")
     seeds = SEEDS.get(target, SEEDS["inprocess"]) if seeds is None else seeds
-    began_s = time.monotonic()
+    began_s, scores = time.monotonic(), sensor_radar.Scores()
     with closing(open_target(target)) as opened:
-        scores = _run(opened, Plan(seeds=seeds, recording=walk), progress)
+        if "sensor-radar" in cases:
+            plan = sensor_radar.Plan(seeds=seeds, recording=walk)
+            _work(sensor_radar.steps(opened, plan, scores), plan.steps(), progress)
+        if "through-wall" in cases:
+            behind_wall = through_wall.ThroughWallPlan(seeds=seeds)
+            _work(through_wall.steps(opened, behind_wall, scores), behind_wall.steps(), progress)
     took_s = time.monotonic() - began_s
     print(format_scores(scores.boards))
     print()
@@ -44,7 +52,7 @@ def conform_sensor_radar(
     print(f"{target}, {seeds} seeds and {about_walk}: {rows} taps of choices, {verdict} ({took_s:.0f} s)")
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-        about = {"case": "sensor-radar", "target": target, "seeds": seeds, "recording": about_walk}
+        about = {"cases": list(cases), "target": target, "seeds": seeds, "recording": about_walk}
         write_json(out / "conformance.json", scores.boards, about)
         (out / "tolerances.txt").write_text(format_tolerances() + "\n", encoding="utf-8")
         print(f"wrote {out / 'conformance.json'}")
@@ -68,15 +76,13 @@ def _recording(path: Path | None) -> tuple[Recording | None, str]:
         if not loaded.site_toml.strip():
             raise InputError(problem(path, "/site", "a site file inside"))
         return loaded, str(path)
-    walk = real_walk()
+    walk = sensor_radar.real_walk()
     if walk is None:
         print("The real walk was skipped: no p410-triangle in ../shared/data or $ECHOFUSE_DATA.")
         return None, "no recording (the real walk was skipped)"
     return walk, "the real walk"
 
 
-def _run(target: ConformanceTarget, plan: Plan, progress: Progress | None) -> Scores:
-    scores = Scores()
-    for _ in (progress or bar)(steps(target, plan, scores), "conforming", plan.steps()):
+def _work(steps: Iterator[None], how_many: int, progress: Progress | None) -> None:
+    for _ in (progress or bar)(steps, "conforming", how_many):
         pass
-    return scores

@@ -6,11 +6,21 @@ from typing import Any
 import numpy as np
 
 from echofuse import _core
-from echofuse.conformance.target import HubAnswer, HubTarget, NodeAnswer, NodeTarget, Report, Scan, Taps
+from echofuse.conformance.target import (
+    HubAnswer,
+    HubTarget,
+    NodeAnswer,
+    NodeTarget,
+    Report,
+    Scan,
+    ScanTarget,
+    Taps,
+)
 from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID, Machine
 from echofuse.emulation.machine import named_taps
 from echofuse.emulation.targets import BoardOpener
+from echofuse.errors import InputError, problem
 
 PAUSE_US = 10_000_000  # between two inputs, longer than any link remembers a transfer
 
@@ -26,6 +36,10 @@ class FirmwareConformanceTarget:
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """See `ConformanceTarget`."""
         return FirmwareNode(self, self._machine("node", config))
+
+    def through_wall_node(self, config: "_core.ThroughWallNodeConfig") -> ScanTarget:
+        """See `ConformanceTarget`; no board runs it."""
+        raise InputError(problem("conform", "through-wall", "target inprocess", self.name))
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""

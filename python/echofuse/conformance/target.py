@@ -20,17 +20,21 @@ class NodeAnswer:
     taps: Taps = field(default_factory=dict)  # by the names of TapId
 
 
-class NodeTarget(Protocol):
-    """A configured node."""
-
-    def set_empty_room(self, scan: Scan) -> None:
-        """Average one scan (n_samples,) [count] of the empty room into the background."""
+class ScanTarget(Protocol):
+    """A configured node of any pipeline."""
 
     def process(self, scan: Scan, time_us: int) -> NodeAnswer | None:
         """Take scan (n_samples,) [count]; an answer when it completes the pulses of a scan."""
 
     def close(self) -> None:
         """Give it back."""
+
+
+class NodeTarget(ScanTarget, Protocol):
+    """A configured node of the sensor radar."""
+
+    def set_empty_room(self, scan: Scan) -> None:
+        """Average one scan (n_samples,) [count] of the empty room into the background."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,9 @@ class ConformanceTarget(Protocol):
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """Return a node configured and forgetful."""
 
+    def through_wall_node(self, config: "_core.ThroughWallNodeConfig") -> ScanTarget:
+        """Return a receiver configured and forgetful; InputError where the target has none."""
+
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """Return a hub configured and forgetful."""
 
@@ -81,19 +88,15 @@ class ConformanceTarget(Protocol):
         """End all machines."""
 
 
-class InProcessNode:
-    """The library's node in this process."""
+class InProcessScans:
+    """A node of the library in this process."""
 
-    def __init__(self, config: "_core.SensorRadarNodeConfig") -> None:
-        self._node = _core.SensorRadarNode()
-        _expect(self._node.configure(config), f"configure, {config.invalid_field()}")
-
-    def set_empty_room(self, scan: Scan) -> None:
-        """See `NodeTarget`."""
-        _expect(self._node.set_empty_room(scan), "set_empty_room")
+    def __init__(self, node: Any, config: Any) -> None:
+        self._node = node
+        _expect(node.configure(config), f"configure, {config.invalid_field()}")
 
     def process(self, scan: Scan, time_us: int) -> NodeAnswer | None:
-        """See `NodeTarget`."""
+        """See `ScanTarget`."""
         status, detections, taps = self._node.process_with_taps(scan, time_us)
         _expect(status, "process", _core.Status.truncated)
         if not self._node.report_ready():
@@ -102,6 +105,14 @@ class InProcessNode:
 
     def close(self) -> None:
         """Nothing is held."""
+
+
+class InProcessNode(InProcessScans):
+    """The library's sensor-radar node in this process."""
+
+    def set_empty_room(self, scan: Scan) -> None:
+        """See `NodeTarget`."""
+        _expect(self._node.set_empty_room(scan), "set_empty_room")
 
 
 class InProcessHub:
@@ -136,7 +147,11 @@ class InProcessTarget:
 
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """See `ConformanceTarget`."""
-        return InProcessNode(config)
+        return InProcessNode(_core.SensorRadarNode(), config)
+
+    def through_wall_node(self, config: "_core.ThroughWallNodeConfig") -> ScanTarget:
+        """See `ConformanceTarget`."""
+        return InProcessScans(_core.ThroughWallNode(), config)
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""

@@ -19,7 +19,6 @@ SPEED_OF_LIGHT_MPS = 299792458.0
 MAX_DETECTIONS = 16  # of one report
 MAX_TRACES = 64  # of one response
 SAME_ECHO_SAMPLES = 1.0  # two traces that begin closer together are one
-NO_TRACES = np.zeros((0, 2))
 
 
 class ThroughWallNodeConfig(Protocol):
@@ -46,6 +45,7 @@ class ThroughWallReport:
 
     state: str  # "judged", "dead", "saturated", "cross_talk_missing" or "settling"
     detections: NDArray[np.float64]  # (n_detections, 2) delay [s], weight; ascending delay
+    traces: NDArray[np.intp]  # (n_detections,) which of the traces each begins with
     taps: dict[str, NDArray[np.float64]] = field(default_factory=dict)  # by name of TapId
     margins: dict[str, NDArray[np.float64]] = field(default_factory=dict)  # of the tap's decisions
 
@@ -89,10 +89,11 @@ class ThroughWallNode:
         traces = target_traces(detector.decisions, config.target_traces)
         toa_samples, weight = traces.toa_samples[:MAX_TRACES], traces.weight[:MAX_TRACES]
         edges = leading_edge(amplitude, toa_samples, config.leading_edge)
-        detections, report_margin = self._report(edges.toa_samples, weight, place)
+        detections, which, report_margin = self._report(edges.toa_samples, weight, place)
         return ThroughWallReport(
             state=state,
             detections=detections,
+            traces=which,
             taps={
                 "scan": response,
                 "time_zero": np.array([place.found, place.rotation, place.fraction_samples], np.float64),
@@ -138,32 +139,32 @@ class ThroughWallNode:
 
     def _report(
         self, toa_samples: Samples, weight: NDArray[np.intp], place: TimeZeroResult
-    ) -> tuple[Samples, float]:
-        """Detections (n, 2), and the least distance [sample] of a decision about them from flipping.
+    ) -> tuple[Samples, NDArray[np.intp], float]:
+        """Detections (n, 2), which trace each begins with, and the least distance [sample] of a decision.
 
         Traces that begin within a sample of an earlier one are the same echo: it has the earlier beginning
         and the larger weight.
         """
         config = self._config
-        echoes: list[list[float]] = []
         margin = np.inf
+        begins: list[int] = []
+        weights: list[float] = []
         for which in np.argsort(toa_samples, kind="stable"):
-            toa, its_weight = float(toa_samples[which]), float(weight[which])
-            if echoes:
-                margin = min(margin, abs(toa - echoes[-1][0] - SAME_ECHO_SAMPLES))
-            if echoes and toa - echoes[-1][0] < SAME_ECHO_SAMPLES:
-                echoes[-1][1] = max(echoes[-1][1], its_weight)
+            apart = toa_samples[which] - toa_samples[begins[-1]] if begins else np.inf
+            margin = min(margin, abs(apart - SAME_ECHO_SAMPLES))
+            if apart < SAME_ECHO_SAMPLES:
+                weights[-1] = max(weights[-1], float(weight[which]))
             else:
-                echoes.append([toa, its_weight])
-        if not echoes:
-            return NO_TRACES, margin
-        rows = np.array(echoes)
-        rows[:, 0] = self.delay_s(rows[:, 0], place)
-        limits = [config.baseline_m / SPEED_OF_LIGHT_MPS + config.blind_zone_s]
-        if config.max_delay_s > 0.0:
-            limits.append(config.max_delay_s)
-        distance_s = np.min([np.abs(rows[:, 0] - limit) for limit in limits])
-        margin = min(margin, float(distance_s) * config.sample_rate_hz)
-        rows = rows[(rows[:, 0] >= limits[0]) & (rows[:, 0] <= (*limits, np.inf)[1])]
-        kept = np.sort(np.argsort(-rows[:, 1], kind="stable")[:MAX_DETECTIONS])
-        return rows[kept], margin
+                begins.append(int(which))
+                weights.append(float(weight[which]))
+        traces = np.array(begins, np.intp)
+        rows = np.column_stack([self.delay_s(toa_samples[traces], place), weights])
+        first_s = config.baseline_m / SPEED_OF_LIGHT_MPS + config.blind_zone_s
+        last_s = config.max_delay_s or np.inf
+        for limit_s in (first_s, last_s):
+            distance_s = float(np.min(np.abs(rows[:, 0] - limit_s), initial=np.inf))
+            margin = min(margin, distance_s * config.sample_rate_hz)
+        inside = np.flatnonzero((rows[:, 0] >= first_s) & (rows[:, 0] <= last_s))
+        heaviest = np.argsort(-rows[inside, 1], kind="stable")[:MAX_DETECTIONS]
+        kept = inside[np.sort(heaviest)]
+        return rows[kept], traces[kept], margin

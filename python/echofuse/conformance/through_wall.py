@@ -1,0 +1,32 @@
+"""The comparison for the node of the pipeline `through_wall_2d`."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from echofuse import _core
+from echofuse.conformance.choices import THROUGH_WALL_NODE_CHOICES, Choice
+from echofuse.conformance.sensor_radar import Scores
+from echofuse.conformance.target import ConformanceTarget
+from echofuse.conformance.through_wall_inputs import simulated_responses
+from echofuse.conformance.through_wall_taps import conform_through_wall_node
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThroughWallPlan:
+    """How much is compared."""
+
+    seeds: int = 20
+    node_choices: Sequence[Choice] = THROUGH_WALL_NODE_CHOICES
+
+    def steps(self) -> int:
+        """How many steps the comparison has."""
+        return len(self.node_choices)
+
+
+def steps(target: ConformanceTarget, plan: ThroughWallPlan, scores: Scores) -> Iterator[None]:
+    """Compare in `plan.steps()` steps; what is found goes into `scores`. InputError: no such node there."""
+    target.through_wall_node(_core.ThroughWallNodeConfig()).close()  # before a minute of simulation
+    inputs = list(simulated_responses(plan.seeds))
+    for choice in plan.node_choices:
+        conform_through_wall_node(scores.board("through-wall node"), choice, target, inputs)
+        yield
