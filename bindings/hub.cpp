@@ -339,6 +339,7 @@ void bind_hub(py::module_& m) {
   bind_point_clusters(m);
   bind_hub_track(m);
   bind_hub_pipeline(m);
+  bind_hub_through_wall(m);
 }
 
 }  // namespace echofuse::bindings

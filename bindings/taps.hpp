@@ -38,6 +38,7 @@ inline constexpr TapLayout kTapLayouts[] = {
     {TapId::kResampled, "resampled", 5},
     {TapId::kPeaks, "peaks", 5},
     {TapId::kTracks, "tracks", 7},
+    {TapId::kAssociated, "associated", 0},
 };
 
 /// Copies the taps of one call into a dictionary by name, and takes the sink out again, whatever happens.

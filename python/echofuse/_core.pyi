@@ -62,6 +62,8 @@ __all__: list[str] = [
     "NoiseFloor",
     "NoiseFloorConfig",
     "PairingRule",
+    "PathTracker",
+    "PathTrackerConfig",
     "Pcg32",
     "PeakInitialisation",
     "PhdConfig",
@@ -93,6 +95,7 @@ __all__: list[str] = [
     "SensorRadarNodeConfig",
     "Status",
     "TAPS",
+    "THROUGH_WALL_HUB_BYTES",
     "THROUGH_WALL_NODE_BYTES",
     "TargetTraceConfig",
     "TargetTracer",
@@ -101,6 +104,8 @@ __all__: list[str] = [
     "Taylor3dFix",
     "Taylor3dStart",
     "Taylor3dStatus",
+    "ThroughWallHub",
+    "ThroughWallHubConfig",
     "ThroughWallNode",
     "ThroughWallNodeConfig",
     "TimeZero",
@@ -4260,6 +4265,317 @@ class SensorRadarHub:
         """
     def reset(self) -> None: ...
 
+class PathTrackerConfig:
+    """
+    Tracks that choose among the receivers' traces.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    max_tracks: int
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> PathTrackerConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> PathTrackerConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        acceleration_density_m2ps3: float = 1.0,
+        velocity_std_mps: float = 1.0,
+        path_std_m: float = 0.06,
+        common_path_std_m: float = 0.1,
+        gate: float = 16.0,
+        missing_cost: float = 4.0,
+        lone_gate: float = 6.6,
+        lone_limit: int = 9,
+        cut_off: float = 1.5,
+        confirm_updates: int = 5,
+        confirm_window: int = 8,
+        silent_time_s: float = 1.0,
+        silent_velocity_time_s: float = 0.5,
+        birth_exclusion_m: float = 0.7,
+        merge_distance_m: float = 0.3,
+        merge_speed_mps: float = 0.6,
+        max_tracks: int = 10,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def acceleration_density_m2ps3(self) -> float:
+        """
+        [m^2/s^3], > 0
+        """
+    @acceleration_density_m2ps3.setter
+    def acceleration_density_m2ps3(self, value: float) -> None: ...
+    @property
+    def birth_exclusion_m(self) -> float:
+        """
+        [m] from other tracks, >= 0
+        """
+    @birth_exclusion_m.setter
+    def birth_exclusion_m(self, value: float) -> None: ...
+    @property
+    def common_path_std_m(self) -> float:
+        """
+        [m] of what all share, >= 0
+        """
+    @common_path_std_m.setter
+    def common_path_std_m(self, value: float) -> None: ...
+    @property
+    def confirm_updates(self) -> int:
+        """
+        of the last responses, >= 1
+        """
+    @confirm_updates.setter
+    def confirm_updates(self, value: int) -> None: ...
+    @property
+    def confirm_window(self) -> int:
+        """
+        responses, at most 32
+        """
+    @confirm_window.setter
+    def confirm_window(self, value: int) -> None: ...
+    @property
+    def cut_off(self) -> float:
+        """
+        deviations of a difference of paths, > 0
+        """
+    @cut_off.setter
+    def cut_off(self, value: float) -> None: ...
+    @property
+    def gate(self) -> float:
+        """
+        squared distance of a combination, > 0
+        """
+    @gate.setter
+    def gate(self, value: float) -> None: ...
+    @property
+    def lone_gate(self) -> float:
+        """
+        squared distance of a single trace, >= 0
+        """
+    @lone_gate.setter
+    def lone_gate(self, value: float) -> None: ...
+    @property
+    def lone_limit(self) -> int:
+        """
+        responses in a row, >= 0
+        """
+    @lone_limit.setter
+    def lone_limit(self, value: int) -> None: ...
+    @property
+    def merge_distance_m(self) -> float:
+        """
+        [m] two that are one person, >= 0
+        """
+    @merge_distance_m.setter
+    def merge_distance_m(self, value: float) -> None: ...
+    @property
+    def merge_speed_mps(self) -> float:
+        """
+        [m/s] and as fast, >= 0
+        """
+    @merge_speed_mps.setter
+    def merge_speed_mps(self, value: float) -> None: ...
+    @property
+    def missing_cost(self) -> float:
+        """
+        for each receiver without a trace, >= 0
+        """
+    @missing_cost.setter
+    def missing_cost(self, value: float) -> None: ...
+    @property
+    def path_std_m(self) -> float:
+        """
+        [m] of one receiver's path for itself, > 0
+        """
+    @path_std_m.setter
+    def path_std_m(self, value: float) -> None: ...
+    @property
+    def silent_time_s(self) -> float:
+        """
+        [s] for which a track may be silent, >= 0
+        """
+    @silent_time_s.setter
+    def silent_time_s(self, value: float) -> None: ...
+    @property
+    def silent_velocity_time_s(self) -> float:
+        """
+        [s] fades with it, >= 0
+        """
+    @silent_velocity_time_s.setter
+    def silent_velocity_time_s(self, value: float) -> None: ...
+    @property
+    def velocity_std_mps(self) -> float:
+        """
+        [m/s] at birth, > 0
+        """
+    @velocity_std_mps.setter
+    def velocity_std_mps(self, value: float) -> None: ...
+
+class PathTracker:
+    def __init__(self) -> None: ...
+    def begin(self, fix: LineFix) -> Status: ...
+    def configure(
+        self,
+        config: PathTrackerConfig,
+        wall: WallConfig,
+        rx_x_m: numpy.typing.NDArray[numpy.float32],
+        area: Area,
+    ) -> Status: ...
+    def dropped_births(self) -> int: ...
+    def reset(self) -> None: ...
+    def tracks(self) -> numpy.typing.NDArray[numpy.void]:
+        """
+        Structured array of Track.
+        """
+    def update(
+        self,
+        paths_m: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float32]],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.int32]]:
+        """
+        (status, owners): paths_m is a list of one array a receiver (n,) [m]; owners is the id of the track that took each, one after the other, 0 if none did.
+        """
+
+class ThroughWallHubConfig:
+    """
+    The hub of the pipeline through_wall_2d.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    frame_assembler: FrameAssemblerConfig
+    line_locator: LineLocatorConfig
+    path_tracker: PathTrackerConfig
+    trace_pairing: TracePairingConfig
+    tracks: TrackManagerConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> ThroughWallHubConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> ThroughWallHubConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        nodes: collections.abc.Sequence[NodeSite] = ...,
+        n_nodes: int = 0,
+        area: Area = ...,
+        frame_period_s: float = 0.074,
+        body_radius_m: float = 0.21,
+        track_aided: bool = True,
+        frame_assembler: FrameAssemblerConfig = ...,
+        trace_pairing: TracePairingConfig = ...,
+        line_locator: LineLocatorConfig = ...,
+        path_tracker: PathTrackerConfig = ...,
+        tracks: TrackManagerConfig = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    def set_area(
+        self,
+        min_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        min_y_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_y_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def set_nodes(
+        self,
+        node_ids: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        tx_m: numpy.typing.NDArray[numpy.float32],
+        rx_m: numpy.typing.NDArray[numpy.float32],
+    ) -> None:
+        """
+        Sets nodes and n_nodes from positions (n, 2) [m].
+        """
+    @property
+    def area(self) -> Area:
+        """
+        the room behind the wall
+        """
+    @area.setter
+    def area(self, value: Area) -> None: ...
+    @property
+    def body_radius_m(self) -> float:
+        """
+        [m] from an echo's beginning to a person's middle, >= 0
+        """
+    @body_radius_m.setter
+    def body_radius_m(self, value: float) -> None: ...
+    @property
+    def frame_period_s(self) -> float:
+        """
+        [s] taken for the first frame, > 0
+        """
+    @frame_period_s.setter
+    def frame_period_s(self, value: float) -> None: ...
+    @property
+    def n_nodes(self) -> int:
+        """
+        at least 2, on a line with their one transmitter
+        """
+    @n_nodes.setter
+    def n_nodes(self, value: int) -> None: ...
+    @property
+    def nodes(self) -> collections.abc.Sequence[NodeSite]:
+        """
+        the first n_nodes
+        """
+    @nodes.setter
+    def nodes(self, value: collections.abc.Sequence[NodeSite]) -> None: ...
+    @property
+    def track_aided(self) -> bool:
+        """
+        tracks take part in the pairing
+        """
+    @track_aided.setter
+    def track_aided(self, value: bool) -> None: ...
+
+class ThroughWallHub:
+    """
+    The nodes' reports in, tracks out.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: ThroughWallHubConfig) -> Status: ...
+    def counters(self) -> dict:
+        """
+        What happened since configure(), by name.
+        """
+    def poll(self, now_us: typing.SupportsInt | typing.SupportsIndex) -> tuple:
+        """
+        (status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of Track.
+        """
+    def poll_with_taps(
+        self, now_us: typing.SupportsInt | typing.SupportsIndex
+    ) -> tuple[typing.Any, typing.Any, dict]:
+        """
+        (status, None or (time_us, frame, tracks), taps by name, each (n, columns)).
+        """
+    def receive(
+        self,
+        node_id: typing.SupportsInt | typing.SupportsIndex,
+        frame: typing.SupportsInt | typing.SupportsIndex,
+        delay_s: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        now_us: typing.SupportsInt | typing.SupportsIndex,
+        time_us: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> Status:
+        """
+        One node's report; frame counts the node's scans, time_us is the scan's by the node's clock (0: not known).
+        """
+    def reset(self) -> None: ...
+
 class TransferKind:
     """
     Members:
@@ -4504,5 +4820,7 @@ TAPS: dict = {
     37: ("resampled", 5),
     38: ("peaks", 5),
     39: ("tracks", 7),
+    40: ("associated", 0),
 }
+THROUGH_WALL_HUB_BYTES: int = 25024
 THROUGH_WALL_NODE_BYTES: int = 49200

@@ -72,7 +72,7 @@ class HubReference:
 
     def step_s(self, time_us: int) -> float:
         """Time since the last frame [s]."""
-        return self.hub.step_s(time_us)
+        return self.hub.clock.step_s(time_us, self.config.frame_period_s)
 
     def know(self, tracks: NDArray[np.void]) -> None:
         """Take over the target's tracks as the known people."""

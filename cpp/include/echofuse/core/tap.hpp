@@ -36,6 +36,8 @@ enum class TapId : std::uint8_t {
   kResampled = 37,  ///< (n_particles, 5)
   kPeaks = 38,      ///< (n_peaks, 5) x, y [m], vx, vy [m/s], mass
   kTracks = 39,     ///< (n_tracks, 7) id, state, x, y [m], vx, vy [m/s], scans since the last update
+  kAssociated =
+      40,  ///< (n_detections,) of the frame: id of the track that took it, -k of the k-th couple, 0 of neither
 };
 
 /// Receives one tap: `values` is only valid during the call, and empty for a mark.

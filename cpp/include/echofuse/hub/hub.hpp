@@ -13,6 +13,7 @@
 #include "echofuse/hub/locate/ellipse_least_squares.hpp"
 #include "echofuse/hub/locate/site.hpp"
 #include "echofuse/hub/measure/frame_assembler.hpp"
+#include "echofuse/hub/measure/frame_clock.hpp"
 #include "echofuse/hub/measure/measurement_selection.hpp"
 #include "echofuse/hub/measure/point_clusters.hpp"
 #include "echofuse/hub/track/kalman_tracker.hpp"
@@ -79,9 +80,7 @@ class SensorRadarHub {
 
  private:
   Status track(float dt_s, link::Tracks& tracks);
-  float step_s(std::int64_t time_us);
   void predict_people(float dt_s, BoundedVector<Point>& people) const;
-  void tap_frame();
   void tap_selected();
   void tap_points();
 
@@ -99,9 +98,7 @@ class SensorRadarHub {
   BoundedVector<Measurement, kMaxMeasurementsPerFrame> measurements_;
   BoundedVector<PointCluster, kMaxPointsPerFrame> points_;
   BoundedVector<link::Track, kMaxTracks> known_;  ///< tracks after the last frame
-  std::int64_t last_time_us_ = 0;
-  bool first_frame_ = true;
-  std::uint32_t clock_faults_ = 0;
+  FrameClock clock_;
 
   /// Where a tap is prepared: too much for a stack.
   std::array<float, std::max({3 * kMaxFrameDetections, 5 * kMaxMeasurementsPerFrame, 4 * kMaxPointsPerFrame})>

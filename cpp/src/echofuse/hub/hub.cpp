@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echofuse/core/constants.hpp"
+#include "measure/show_frame.hpp"
 
 namespace echofuse::hub {
 
@@ -50,8 +50,7 @@ void SensorRadarHub::reset() {
   kalman_tracker_.reset();
   range_tracker_.reset();
   known_.clear();
-  first_frame_ = true;
-  clock_faults_ = 0;
+  clock_.reset();
 }
 
 void SensorRadarHub::set_tap_sink(const TapSink& sink) {
@@ -72,8 +71,8 @@ Status SensorRadarHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
   if (!configured_) return Status::kNotConfigured;
   if (const Status status = frame_assembler_.poll(now_us, frame_, closed); status != Status::kOk || !closed)
     return status;
-  tap_frame();
-  const float dt_s = step_s(frame_.time_us);
+  show_frame(taps_, frame_, {tap_rows_.data(), tap_rows_.size()});
+  const float dt_s = clock_.step_s(frame_.time_us, config_.frame_period_s);
 
   BoundedVector<Point, kMaxTracks> people;
   predict_people(dt_s, people);
@@ -104,18 +103,6 @@ Status SensorRadarHub::track(float dt_s, link::Tracks& tracks) {
   return kalman_tracker_.process(positions.span(), dt_s, tracks);
 }
 
-/// [s] since the last frame.
-float SensorRadarHub::step_s(std::int64_t time_us) {
-  const std::int64_t step_us = time_us - last_time_us_;
-  const bool first = first_frame_;
-  last_time_us_ = time_us;
-  first_frame_ = false;
-  if (first) return config_.frame_period_s;
-  if (step_us > 0) return static_cast<float>(step_us) * kSecondsPerMicrosecond;
-  ++clock_faults_;
-  return config_.frame_period_s;
-}
-
 /// Where the known people should be by now.
 void SensorRadarHub::predict_people(float dt_s, BoundedVector<Point>& people) const {
   for (const link::Track& track : known_) {
@@ -130,15 +117,7 @@ SensorRadarHubCounters SensorRadarHub::counters() const {
   if (config_.tracker == Tracker::kPhd) dropped_births = phd_tracker_.manager().dropped_births();
   if (config_.tracker == Tracker::kKalman) dropped_births = kalman_tracker_.manager().dropped_births();
   return {frame_assembler_.counters(), selection_.counters(), point_clusters_.dropped(), dropped_births,
-          clock_faults_};
-}
-
-void SensorRadarHub::tap_frame() {
-  if (!taps_.wants(TapId::kFrame)) return;
-  std::size_t n = 0;
-  for (const FrameDetection& d : frame_.detections)
-    for (const float value : {static_cast<float>(d.node_index), d.path_m, d.weight}) tap_rows_[n++] = value;
-  taps_(TapId::kFrame, {tap_rows_.data(), n});
+          clock_.faults()};
 }
 
 void SensorRadarHub::tap_selected() {

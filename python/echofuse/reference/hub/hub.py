@@ -16,6 +16,7 @@ from echofuse.reference.hub.measure.frame_assembler import (
     FrameAssemblerConfig,
     Report,
 )
+from echofuse.reference.hub.measure.frame_clock import FrameClock
 from echofuse.reference.hub.measure.measurement_selection import (
     Limits,
     Measurements,
@@ -118,8 +119,7 @@ class SensorRadarHub:
             kalman = SimpleNamespace(**(vars(config.tracks) | {"update": "kalman"}))
             self.kalman = KalmanTracker(kalman, limits.max_tracks)
         self.known: list[Track] | list[RangeTrack] = []
-        self.last_time_us: int | None = None
-        self.clock_faults = 0
+        self.clock = FrameClock()
 
     def receive(self, report: Report, now_us: int) -> bool:
         """Whether the report was a good one of this site."""
@@ -130,7 +130,7 @@ class SensorRadarHub:
         closed = self.assembler.poll(now_us)
         if closed is None:
             return None
-        dt_s = self.step_s(closed.time_us)
+        dt_s = self.clock.step_s(closed.time_us, self.config.frame_period_s)
         limits = Limits(self.limits.max_tuples, self.limits.max_measurements, self.limits.max_candidates)
         selected = measurement_selection(
             self.config.selection,
@@ -160,16 +160,6 @@ class SensorRadarHub:
         taps["tracks"] = track_rows(step)
         margins["tracks"] = step.margin
         return HubFrame(closed.time_us, closed.number, dt_s, taps, step.tracks, margins)
-
-    def step_s(self, time_us: int) -> float:
-        """Time since the last frame; the configured period at first and when the clock stands."""
-        last, self.last_time_us = self.last_time_us, time_us
-        if last is None:
-            return self.config.frame_period_s
-        if time_us > last:
-            return (time_us - last) * 1e-6
-        self.clock_faults += 1
-        return self.config.frame_period_s
 
     def predict_people(self, dt_s: float) -> Array:
         """Where the known people should be by now (p, 2) [m]."""

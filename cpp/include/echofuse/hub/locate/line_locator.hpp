@@ -35,6 +35,15 @@ struct LineFix {
   bool converged = false;  ///< the last step was under 0.1 mm
 };
 
+/// One way between a position and an antenna on the line, through the wall.
+struct AntennaRay {
+  float optical_m = 0.0f;  ///< [m] speed of light times the time
+  Point gradient;          ///< [1] of it with respect to the position
+};
+
+/// position: y_m > 0, before the antenna's wall or behind it.
+AntennaRay antenna_ray(const Wall& wall, const Point& position, float antenna_x_m);
+
 /// Where two ellipses with one focus at the origin and the others at (x1, 0), (x2, 0) meet, in closed form: with
 /// k = (d^2 - x_r^2) / 2, x = (k2 d1 - k1 d2) / (x1 d2 - x2 d1) and y^2 = ((x1 x + k1) / d1)^2 - x^2.
 LineFix two_ellipses(float path1_m, float path2_m, float rx1_x_m, float rx2_x_m);
@@ -54,6 +63,8 @@ class LineLocator {
   /// another n, something not finite or a negative weight, or less than two paths; fix is then empty. What the
   /// geometry says is in fix.status, with kOk.
   Status process(Span<const float> path_m, Span<const float> weight, LineFix& fix) const;
+
+  const Wall& wall() const { return wall_; }
 
  private:
   struct Paths {

@@ -28,6 +28,13 @@ const char* invalid_field(const LineLocatorConfig& config) {
   return nullptr;
 }
 
+AntennaRay antenna_ray(const Wall& wall, const Point& position, float antenna_x_m) {
+  const float across_m = position.x_m - antenna_x_m;
+  const WallRay ray = wall.ray(std::abs(across_m), position.y_m);
+  const float straight_m = std::sqrt(across_m * across_m + position.y_m * position.y_m);
+  return {straight_m + ray.excess_m, {across_m < 0.0f ? -ray.lateral : ray.lateral, ray.depth}};
+}
+
 LineFix two_ellipses(float path1_m, float path2_m, float rx1_x_m, float rx2_x_m) {
   LineFix fix;
   fix.converged = true;
@@ -119,22 +126,13 @@ void LineLocator::start(const Paths& paths, LineFix& fix) const {
 }
 
 LineLocator::Information LineLocator::information(const Paths& paths, const Point& position) const {
-  const auto ray_from = [&](float antenna_x_m, float& optical_m) {
-    const float across_m = position.x_m - antenna_x_m;
-    WallRay ray = wall_.ray(std::abs(across_m), position.y_m);
-    optical_m = std::sqrt(across_m * across_m + position.y_m * position.y_m) + ray.excess_m;
-    if (across_m < 0.0f) ray.lateral = -ray.lateral;
-    return ray;
-  };
-  float tx_m = 0.0f;
-  const WallRay tx = ray_from(0.0f, tx_m);
+  const AntennaRay tx = antenna_ray(wall_, position, 0.0f);
   Information sums;
   for (std::size_t i = 0; i < paths.n; ++i) {
-    float rx_m = 0.0f;
-    const WallRay rx = ray_from(paths.rx_x_m[i], rx_m);
-    const float x = tx.lateral + rx.lateral;
-    const float y = tx.depth + rx.depth;
-    const float residual = paths.path_m[i] - tx_m - rx_m;
+    const AntennaRay rx = antenna_ray(wall_, position, paths.rx_x_m[i]);
+    const float x = tx.gradient.x_m + rx.gradient.x_m;
+    const float y = tx.gradient.y_m + rx.gradient.y_m;
+    const float residual = paths.path_m[i] - tx.optical_m - rx.optical_m;
     const float weight = paths.weight[i];
     sums.xx += weight * x * x;
     sums.xy += weight * x * y;

@@ -1,0 +1,115 @@
+#include "echofuse/hub/through_wall.hpp"
+
+#include "hub_pipeline.hpp"
+
+namespace echofuse::bindings {
+namespace {
+
+using hub::PathTrackerConfig;
+using hub::ThroughWallHub;
+using hub::ThroughWallHubConfig;
+
+py::dict counters(const ThroughWallHub& self) {
+  const hub::ThroughWallHubCounters c = self.counters();
+  py::dict by_name;
+  add_report_counters(c.reports, by_name);
+  by_name["couples"] = c.couples;
+  by_name["unlocated"] = c.unlocated;
+  by_name["outside_area"] = c.outside_area;
+  by_name["dropped_points"] = c.dropped_points;
+  by_name["dropped_births"] = c.dropped_births;
+  by_name["dropped_combinations"] = c.dropped_combinations;
+  by_name["clock_faults"] = c.clock_faults;
+  return by_name;
+}
+
+/// Paths of each receiver (n_r,) [m], as a frame holds them.
+BoundedVector<hub::FrameDetection, hub::kMaxFrameDetections>& fill_paths(
+    const std::vector<FloatArray>& paths,
+    BoundedVector<hub::FrameDetection, hub::kMaxFrameDetections>& frame) {
+  for (std::size_t r = 0; r < paths.size(); ++r)
+    for (const float path_m : as_span(paths[r], "paths_m"))
+      if (!frame.try_push_back({static_cast<int>(r), path_m, 1.0f}))
+        throw py::value_error("paths_m: more than a frame holds");
+  return frame;
+}
+
+void bind_path_tracker(py::module_& m) {
+  using hub::PathTracker;
+  ConfigBinder<PathTrackerConfig>(m, "PathTrackerConfig", "Tracks that choose among the receivers' traces.")
+      .field("acceleration_density_m2ps3", &PathTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3], > 0")
+      .field("velocity_std_mps", &PathTrackerConfig::velocity_std_mps, "[m/s] at birth, > 0")
+      .field("path_std_m", &PathTrackerConfig::path_std_m, "[m] of one receiver's path for itself, > 0")
+      .field("common_path_std_m", &PathTrackerConfig::common_path_std_m, "[m] of what all share, >= 0")
+      .field("gate", &PathTrackerConfig::gate, "squared distance of a combination, > 0")
+      .field("missing_cost", &PathTrackerConfig::missing_cost, "for each receiver without a trace, >= 0")
+      .field("lone_gate", &PathTrackerConfig::lone_gate, "squared distance of a single trace, >= 0")
+      .field("lone_limit", &PathTrackerConfig::lone_limit, "responses in a row, >= 0")
+      .field("cut_off", &PathTrackerConfig::cut_off, "deviations of a difference of paths, > 0")
+      .field("confirm_updates", &PathTrackerConfig::confirm_updates, "of the last responses, >= 1")
+      .field("confirm_window", &PathTrackerConfig::confirm_window, "responses, at most 32")
+      .field("silent_time_s", &PathTrackerConfig::silent_time_s, "[s] for which a track may be silent, >= 0")
+      .field("silent_velocity_time_s", &PathTrackerConfig::silent_velocity_time_s, "[s] fades with it, >= 0")
+      .field("birth_exclusion_m", &PathTrackerConfig::birth_exclusion_m, "[m] from other tracks, >= 0")
+      .field("merge_distance_m", &PathTrackerConfig::merge_distance_m, "[m] two that are one person, >= 0")
+      .field("merge_speed_mps", &PathTrackerConfig::merge_speed_mps, "[m/s] and as fast, >= 0")
+      .field("max_tracks", &PathTrackerConfig::max_tracks);
+  py::class_<PathTracker>(m, "PathTracker")
+      .def(py::init<>())
+      .def(
+          "configure",
+          [](PathTracker& self, const PathTrackerConfig& config, const hub::WallConfig& wall,
+             const FloatArray& rx_x,
+             const hub::Area& area) { return self.configure(config, wall, as_span(rx_x, "rx_x_m"), area); },
+          py::arg("config"), py::arg("wall"), py::arg("rx_x_m").noconvert(), py::arg("area"))
+      .def("reset", &PathTracker::reset)
+      .def(
+          "update",
+          [](PathTracker& self, const std::vector<FloatArray>& paths, float dt_s) {
+            BoundedVector<hub::FrameDetection, hub::kMaxFrameDetections> frame;
+            fill_paths(paths, frame);
+            std::vector<std::int32_t> owners(frame.size());
+            const Status status = self.update(frame.span(), dt_s, {owners.data(), owners.size()});
+            return py::make_tuple(
+                status, py::array_t<std::int32_t>(static_cast<py::ssize_t>(owners.size()), owners.data()));
+          },
+          py::arg("paths_m"), py::arg("dt_s"),
+          "(status, owners): paths_m is a list of one array a receiver (n,) [m]; owners is the id of the "
+          "track "
+          "that took each, one after the other, 0 if none did.")
+      .def("begin", &PathTracker::begin, py::arg("fix"))
+      .def(
+          "tracks",
+          [](const PathTracker& self) {
+            link::Tracks tracks;
+            self.report(tracks);
+            return to_array(tracks);
+          },
+          "Structured array of Track.")
+      .def("dropped_births", &PathTracker::dropped_births);
+}
+
+}  // namespace
+
+void bind_hub_through_wall(py::module_& m) {
+  bind_path_tracker(m);
+  using Config = ThroughWallHubConfig;
+  ConfigBinder<Config> config(m, "ThroughWallHubConfig", "The hub of the pipeline through_wall_2d.");
+  config.field("nodes", &Config::nodes, "the first n_nodes")
+      .field("n_nodes", &Config::n_nodes, "at least 2, on a line with their one transmitter")
+      .field("area", &Config::area, "the room behind the wall")
+      .field("frame_period_s", &Config::frame_period_s, "[s] taken for the first frame, > 0")
+      .field("body_radius_m", &Config::body_radius_m,
+             "[m] from an echo's beginning to a person's middle, >= 0")
+      .field("track_aided", &Config::track_aided, "tracks take part in the pairing")
+      .field("frame_assembler", &Config::frame_assembler)
+      .field("trace_pairing", &Config::trace_pairing)
+      .field("line_locator", &Config::line_locator)
+      .field("path_tracker", &Config::path_tracker)
+      .field("tracks", &Config::tracks);
+  bind_site(config.type());
+  bind_hub_pipeline_of<ThroughWallHub>(m, "ThroughWallHub", &counters);
+  m.attr("THROUGH_WALL_HUB_BYTES") = sizeof(ThroughWallHub);
+}
+
+}  // namespace echofuse::bindings
