@@ -1,6 +1,7 @@
 """The through-wall node against its reference: it passes on the library, and fails by tap and response."""
 
 from collections import Counter
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -8,12 +9,17 @@ import pytest
 
 from echofuse import _core
 from echofuse.conformance import conform
-from echofuse.conformance.choices import THROUGH_WALL_NODE_CHOICES, Choice
+from echofuse.conformance.choices import THROUGH_WALL_HUB_CHOICES, THROUGH_WALL_NODE_CHOICES, Choice
 from echofuse.conformance.comparison import Scoreboard, as_reference
 from echofuse.conformance.sensor_radar import Scores
 from echofuse.conformance.table import format_scores
 from echofuse.conformance.target import HubTarget, InProcessTarget, NodeAnswer, NodeTarget, Scan, ScanTarget
 from echofuse.conformance.through_wall import ThroughWallPlan, steps
+from echofuse.conformance.through_wall_hub_inputs import (
+    ThroughWallHubInput,
+    simulated_through_wall_reports,
+)
+from echofuse.conformance.through_wall_hub_taps import THROUGH_WALL_HUB_TAPS, conform_through_wall_hub
 from echofuse.conformance.through_wall_inputs import AT, KINDS, LASTS, ThroughWallInput, simulated_responses
 from echofuse.conformance.through_wall_taps import THROUGH_WALL_NODE_TAPS, conform_through_wall_node
 from echofuse.errors import InputError
@@ -179,3 +185,31 @@ def test_conform_compares_the_case_and_says_where_it_cannot(tmp_path: Any, capsy
         conform(["through-wall"], target="process", seeds=1)
     with pytest.raises(InputError, match="--recording"):
         conform(["through-wall"], seeds=1, recording=tmp_path)
+
+
+@pytest.fixture(scope="module")
+def reports() -> list[ThroughWallHubInput]:
+    """Two, three and four receivers."""
+    return list(simulated_through_wall_reports(4))
+
+
+@pytest.mark.parametrize("choice", THROUGH_WALL_HUB_CHOICES, ids=lambda choice: choice.name)
+def test_the_hub_agrees_with_the_reference(choice: Choice, reports: list[ThroughWallHubInput]) -> None:
+    board = Scoreboard()
+    conform_through_wall_hub(board, choice, InProcessTarget(), reports)
+    assert board.passed, format_scores({"hub": board})
+    assert [row.tap for row in board.rows()] == list(THROUGH_WALL_HUB_TAPS)
+
+
+def test_a_hub_that_follows_otherwise_is_found_out(reports: list[ThroughWallHubInput]) -> None:
+    class Otherwise(InProcessTarget):
+        def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
+            other = deepcopy(config)
+            other.path_tracker.cut_off = 1.6
+            return super().through_wall_hub(other)
+
+    board = Scoreboard()
+    conform_through_wall_hub(board, Choice(name="default"), Otherwise(), reports[:1])
+    failed = [row for row in board.rows() if row.failures]
+    assert [row.tap for row in failed] == ["tracks"]
+    assert "seed 0 (2 receivers, 1 people), frame" in failed[0].failures[0]

@@ -134,6 +134,28 @@ THROUGH_WALL_NODE_CHOICES: tuple[Choice, ...] = (
     ),
 )
 
+PAIR_FIRST: Settings = {"track_aided": False}
+
+THROUGH_WALL_HUB_CHOICES: tuple[Choice, ...] = (
+    Choice(name="default"),
+    *_one("line_locator.wall.compensation", "none", "first_kind"),
+    *_one("body_radius_m", 0.0),
+    *_one("path_tracker.lone_gate", 0.0),
+    *_one("path_tracker.silent_velocity_time_s", 0.0),
+    *_one("path_tracker.missing_cost", 0.0),
+    Choice(
+        name="quick tracks",
+        settings={"path_tracker.confirm_updates": 1, "path_tracker.birth_exclusion_m": 0.0},
+    ),
+    Choice(name="track_aided=False", settings=PAIR_FIRST),
+    Choice(name="track_aided=False, all pairs", settings={**PAIR_FIRST, "trace_pairing.rule": "all_pairs"}),
+    Choice(name="track_aided=False, printed", settings={**PAIR_FIRST, "trace_pairing.closing": "printed"}),
+    Choice(
+        name="track_aided=False, nothing completed",
+        settings={**PAIR_FIRST, "trace_pairing.completion_limit": 0},
+    ),
+)
+
 ALL_TUPLES: Settings = {"selection.method": "all_tuples"}
 TUPLES_OF_4: Settings = {
     **ALL_TUPLES,

@@ -45,6 +45,10 @@ class FirmwareConformanceTarget:
         """See `ConformanceTarget`."""
         return FirmwareHub(self, self._machine("hub", config))
 
+    def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
+        """See `ConformanceTarget`; no board runs it."""
+        raise InputError(problem("conform", "through-wall", "target inprocess", self.name))
+
     def give_back(self, machine: "FirmwareUnderTest") -> None:
         """Take a machine that has answered its input."""
         self._free[machine.role].append(machine)

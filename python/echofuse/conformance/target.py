@@ -84,6 +84,9 @@ class ConformanceTarget(Protocol):
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """Return a hub configured and forgetful."""
 
+    def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
+        """Return a hub of receivers configured and forgetful; InputError where the target has none."""
+
     def close(self) -> None:
         """End all machines."""
 
@@ -116,10 +119,10 @@ class InProcessNode(InProcessScans):
 
 
 class InProcessHub:
-    """The library's hub in this process."""
+    """A hub of the library in this process."""
 
-    def __init__(self, config: "_core.SensorRadarHubConfig") -> None:
-        self._hub = _core.SensorRadarHub()
+    def __init__(self, hub: Any, config: Any) -> None:
+        self._hub = hub
         _expect(self._hub.configure(config), f"configure, {config.invalid_field()}")
 
     def receive(self, report: Report, now_us: int) -> None:
@@ -155,7 +158,11 @@ class InProcessTarget:
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""
-        return InProcessHub(config)
+        return InProcessHub(_core.SensorRadarHub(), config)
+
+    def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
+        """See `ConformanceTarget`."""
+        return InProcessHub(_core.ThroughWallHub(), config)
 
     def close(self) -> None:
         """Nothing is held."""

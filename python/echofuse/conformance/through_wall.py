@@ -1,12 +1,14 @@
-"""The comparison for the node of the pipeline `through_wall_2d`."""
+"""The comparison for the pipeline `through_wall_2d`: its node, and its hub."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from echofuse import _core
-from echofuse.conformance.choices import THROUGH_WALL_NODE_CHOICES, Choice
+from echofuse.conformance.choices import THROUGH_WALL_HUB_CHOICES, THROUGH_WALL_NODE_CHOICES, Choice
 from echofuse.conformance.sensor_radar import Scores
 from echofuse.conformance.target import ConformanceTarget
+from echofuse.conformance.through_wall_hub_inputs import LINES_M, simulated_through_wall_reports
+from echofuse.conformance.through_wall_hub_taps import conform_through_wall_hub
 from echofuse.conformance.through_wall_inputs import simulated_responses
 from echofuse.conformance.through_wall_taps import conform_through_wall_node
 
@@ -17,10 +19,11 @@ class ThroughWallPlan:
 
     seeds: int = 20
     node_choices: Sequence[Choice] = THROUGH_WALL_NODE_CHOICES
+    hub_choices: Sequence[Choice] = THROUGH_WALL_HUB_CHOICES
 
     def steps(self) -> int:
         """How many steps the comparison has."""
-        return len(self.node_choices)
+        return len(self.node_choices) + len(self.hub_choices)
 
 
 def steps(target: ConformanceTarget, plan: ThroughWallPlan, scores: Scores) -> Iterator[None]:
@@ -29,4 +32,8 @@ def steps(target: ConformanceTarget, plan: ThroughWallPlan, scores: Scores) -> I
     inputs = list(simulated_responses(plan.seeds))
     for choice in plan.node_choices:
         conform_through_wall_node(scores.board("through-wall node"), choice, target, inputs)
+        yield
+    reports = list(simulated_through_wall_reports(max(plan.seeds, len(LINES_M))))
+    for choice in plan.hub_choices:
+        conform_through_wall_hub(scores.board("through-wall hub"), choice, target, reports)
         yield

@@ -83,7 +83,7 @@ class ThroughWallHub {
 
   void free_delays(std::size_t receiver, Delays& delay_s) const;
   Status pair(BoundedVector<TraceCouple>& couples);
-  void locate(const TraceCouple& couple, std::int32_t number);
+  Status locate(const TraceCouple& couple, std::int32_t number);
   LineFix locate_paths();
   bool available(std::size_t detection) const;
   bool use(std::size_t receiver, float path_m, float reach_m, std::int32_t number);

@@ -115,7 +115,8 @@ Status ThroughWallHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
   BoundedVector<TraceCouple, kMaxPointsPerFrame> couples;
   if (const Status paired = pair(couples); paired != Status::kOk) status = paired;
   std::int32_t number = 0;
-  for (const TraceCouple& couple : couples) locate(couple, --number);
+  for (const TraceCouple& couple : couples)
+    if (const Status located = locate(couple, --number); located != Status::kOk) status = located;
   show_associated();
   show_points();
 
@@ -146,8 +147,8 @@ Status ThroughWallHub::pair(BoundedVector<TraceCouple>& couples) {
   return status;
 }
 
-/// number: of the couple, -1 or less.
-void ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
+/// number: of the couple, -1 or less. kTruncated: no room for its point or its track.
+Status ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
   const float reach_m = kSameTrace / config_.trace_pairing.clock_hz * kSpeedOfLight_mps;
   weight_.fill(0.0f);
   least_weight_ = 0.0f;
@@ -164,15 +165,17 @@ void ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
   }
   if (fix.status != LineFixStatus::kFix) {
     ++counted_.unlocated;
-    return;
+    return Status::kOk;
   }
   if (!contains(config_.area, {fix.position.x_m + tx_.x_m, fix.position.y_m + tx_.y_m})) {
     ++counted_.outside_area;
-    return;
+    return Status::kOk;
   }
   const auto n_paths = static_cast<int>(std::count(weight_.begin(), weight_.end(), 1.0f));
-  if (!points_.try_push_back({fix.position, n_paths, least_weight_})) ++counted_.dropped_points;
-  if (config_.track_aided) (void)path_tracker_.begin(fix);  // which counts
+  const bool room = points_.try_push_back({fix.position, n_paths, least_weight_});
+  if (!room) ++counted_.dropped_points;
+  const Status begun = config_.track_aided ? path_tracker_.begin(fix) : Status::kOk;
+  return room ? begun : Status::kTruncated;
 }
 
 LineFix ThroughWallHub::locate_paths() {

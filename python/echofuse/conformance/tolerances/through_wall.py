@@ -1,4 +1,4 @@
-"""Tolerances of the through-wall node's taps, where rounding has gone through all stages before."""
+"""Tolerances of the through-wall pipeline's taps, where rounding has gone through all stages before."""
 
 from echofuse.conformance.tolerances._tolerance import Tolerance
 
@@ -18,4 +18,7 @@ ROWS: dict[str, Tolerance] = {
     "through_wall.delay": Tolerance(
         1e-6, 3e-14, "the edge's and the cross-talk's fraction; float32 of 100 ns"
     ),
+    "through_wall.point": Tolerance(0.0, 5e-5, "[m] cross-range is paths' differences times ten, of float32"),
+    "through_wall.track": Tolerance(0.0, 2e-4, "[m], [m/s] 70 frames of such differences in float32"),
+    "through_wall.covariance": Tolerance(2e-4, 2e-6, "[m^2] from the gradients at such tracks"),
 }

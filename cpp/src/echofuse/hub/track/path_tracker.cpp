@@ -107,6 +107,8 @@ Status PathTracker::update(Span<const FrameDetection> paths, float dt_s, Span<st
     ++kept;
   }
   while (tracks_.size() > kept) tracks_.pop_back();
+  paths_ = {};
+  owners_ = {};
   return dropped_combinations_ == dropped ? Status::kOk : Status::kTruncated;
 }
 

@@ -1,0 +1,104 @@
+"""Compares every tap of a through-wall hub with the reference's, frame by frame.
+
+Target and reference each keep their own tracks, so after a decision that was a coin toss the rest of an input
+is not compared.
+"""
+
+from collections.abc import Sequence
+from contextlib import closing
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echofuse import _core
+from echofuse.conformance.choices import Choice
+from echofuse.conformance.comparison import Scoreboard, as_reference, to_float64
+from echofuse.conformance.hub_reference import covariances, reference_report
+from echofuse.conformance.target import ConformanceTarget, HubAnswer
+from echofuse.conformance.through_wall_hub_inputs import ThroughWallHubInput
+from echofuse.reference.hub.through_wall import ThroughWallHub, ThroughWallHubFrame
+
+THROUGH_WALL_HUB_TAPS = ("frame", "associated", "points", "tracks")
+DEADLINE_US = 73_000  # after an instant: its frame is overdue, and the next instant not yet there
+
+#: Of a margin, what is compared with the coin toss's: tracks differ by 1e-4 m after seconds in float32.
+MARGIN_SHARE = 0.05
+
+
+def conform_through_wall_hub(
+    board: Scoreboard, choice: Choice, target: ConformanceTarget, inputs: Sequence[ThroughWallHubInput]
+) -> None:
+    """Feed the same reports to target and reference under one choice."""
+    for tap in THROUGH_WALL_HUB_TAPS:
+        board.row(choice.name, tap)
+    for heard in inputs:
+        config = heard.config(choice)
+        with closing(target.through_wall_hub(config)) as hub:
+            reference = ThroughWallHub(
+                as_reference(config), _core.LIMITS["max_points_per_frame"], _core.LIMITS["max_tracks"]
+            )
+            for index, instant in enumerate(heard.instants):
+                for report in instant.reports:
+                    hub.receive(report, instant.time_us)
+                    reference.receive(reference_report(report), instant.time_us)
+                for now_us in (instant.time_us, instant.time_us + DEADLINE_US):
+                    answer, frame = hub.poll(now_us), reference.poll(now_us)
+                    compared = _Frame(board, choice.name, f"{heard.where}, frame {index} of it")
+                    if not compared.compare(answer, frame):
+                        break
+                else:
+                    continue
+                break
+
+
+class _Frame:
+    """One frame's taps."""
+
+    def __init__(self, board: Scoreboard, choice: str, where: str) -> None:
+        self.board, self.choice, self.where = board, choice, where
+
+    def compare(self, answer: HubAnswer | None, frame: ThroughWallHubFrame | None) -> bool:
+        """Whether the next frame may be compared as well."""
+        if answer is None and frame is None:
+            return True
+        if answer is None or frame is None:
+            self.board.row(self.choice, "frame").failures.append(f"{self.where}: closed by one side only")
+            return False
+        missing = [tap for tap in THROUGH_WALL_HUB_TAPS if tap not in answer.taps]
+        for tap in missing:
+            self.board.row(self.choice, tap).failures.append(f"{self.where}: the target shows no such tap")
+        if missing:
+            return False
+        got, expected = {tap: to_float64(answer.taps[tap]) for tap in THROUGH_WALL_HUB_TAPS}, frame.taps
+        margin = {tap: MARGIN_SHARE * value for tap, value in frame.margins.items()}
+        stamp = np.array([frame.time_us, frame.number])
+        return (
+            self._decisions("frame", np.array([answer.time_us, answer.frame]), stamp)
+            and self._decisions("frame", got["frame"][:, [0, 2]], expected["frame"][:, [0, 2]])
+            and self._floats("frame", "hub.frame.path", got["frame"][:, 1], expected["frame"][:, 1])
+            and self._decisions("associated", got["associated"], expected["associated"], margin["associated"])
+            and self._decisions("points", got["points"][:, 2:], expected["points"][:, 2:], margin["points"])
+            and self._floats("points", "through_wall.point", got["points"][:, :2], expected["points"][:, :2])
+            and self._decisions(
+                "tracks", got["tracks"][:, [0, 1, 6]], expected["tracks"][:, [0, 1, 6]], margin["tracks"]
+            )
+            and self._floats(
+                "tracks", "through_wall.track", got["tracks"][:, 2:6], expected["tracks"][:, 2:6]
+            )
+            and self._floats(
+                "tracks",
+                "through_wall.covariance",
+                np.column_stack([answer.tracks[f"covariance_{axes}_m2"] for axes in ("xx", "xy", "yy")]),
+                covariances(frame.tracks),
+            )
+        )
+
+    def _decisions(
+        self, tap: str, got: NDArray[np.float64], expected: NDArray[np.float64], margin: float = np.inf
+    ) -> bool:
+        return self.board.decisions(self.choice, tap, self.where, got, expected, margin)
+
+    def _floats(
+        self, tap: str, tolerance: str, got: NDArray[np.float64], expected: NDArray[np.float64]
+    ) -> bool:
+        return self.board.floats(self.choice, tap, self.where, got, expected, tolerance)
