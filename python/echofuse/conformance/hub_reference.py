@@ -22,6 +22,7 @@ from echofuse.reference.hub.measure.measurement_selection import (
     measurement_selection,
 )
 from echofuse.reference.hub.measure.point_clusters import PointClusters, point_clusters
+from echofuse.reference.hub.track.path_tracker import PathTrack
 from echofuse.reference.hub.track.phd_filter import PhdUpdate
 from echofuse.reference.hub.track.phd_tracker import PhdTracker, estimates
 from echofuse.reference.hub.track.range_tracker import RangeStep, RangeTrack
@@ -151,7 +152,7 @@ class HubReference:
         return step._replace(margin=step.margin / RANGE_MARGIN)
 
 
-def covariances(tracks: Sequence[Track | RangeTrack]) -> Array:
+def covariances(tracks: Sequence[Track | RangeTrack | PathTrack]) -> Array:
     """Position covariances (n, 3): xx, xy, yy [m^2]."""
     entries = [track.filter.covariance[[0, 0, 2], [0, 2, 2]] for track in tracks]
     return np.array(entries, np.float64).reshape(-1, 3)
