@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from echofuse.simulation.people import Body, Person, visibility
+from echofuse.simulation.propagation import obstacle
 from echofuse.simulation.scene import sensor_radar_scene
 from echofuse.simulation.sensor_radar import CASE_STUDY_DURATION_S, case_study_people
 from echofuse.simulation.walk import Walk
@@ -27,10 +30,30 @@ def test_a_stop_holds_the_position_and_the_heading() -> None:
     assert walk.heading_rad(2.5) == 0.0
 
 
+def test_a_walk_that_rises_has_its_speed_along_the_slope_and_takes_the_body_with_it() -> None:
+    walk = Walk(waypoints_m=((0.0, 0.0, -1.0), (3.0, 0.0, 3.0), (3.0, 5.0, 3.0)), speed_mps=1.0)
+    np.testing.assert_allclose(walk.position_m([0.0, 2.5, 5.0, 7.0]), [[0, 0], [1.5, 0], [3, 0], [3, 2]])
+    np.testing.assert_allclose(walk.ground_m([0.0, 2.5, 5.0, 7.0, 17.5]), [-1.0, 1.0, 3.0, 3.0, 1.0])
+    assert float(np.hypot(*walk.velocity_mps(2.5))) == pytest.approx(0.6)
+    level = replace(walk, waypoints_m=((0.0, 0.0), (5.0, 0.0)))
+    assert (walk.rises, level.rises) == (True, False)
+    np.testing.assert_array_equal(level.ground_m(np.ones(3)), np.zeros(3))
+    person = Person(person_id=1, walk=walk)
+    np.testing.assert_allclose(
+        person.position_m(np.array([2.5]))[0], [1.5, 0.0, 1.0 + person.centre_height_m]
+    )
+    low, high = (Body(person, np.random.default_rng(0)).scatterers(t).position_m for t in (2.0, 2.5))
+    assert np.mean(high[:42, 2] - low[:42, 2]) == pytest.approx(0.4, abs=0.05)  # torso and head
+    assert obstacle(person, 2.5).bottom_m == pytest.approx(1.0)
+    assert obstacle(person, 2.5).top_m == pytest.approx(1.0 + person.height_m)
+
+
 @pytest.mark.parametrize(
     ("change", "named"),
     [
         ({"waypoints_m": ((1.0, 1.0), (1.0, 1.0))}, "waypoints_m"),
+        ({"waypoints_m": ((1.0, 1.0), (1.0, 2.0, 0.5))}, "waypoints_m: all of"),
+        ({"waypoints_m": ((1.0,), (2.0,))}, "waypoints_m: all of"),
         ({"speed_mps": 0.0}, "speed_mps"),
         ({"speed_mps": float("nan")}, "speed_mps"),
         ({"stops_s": ((2.0, 2.0), (3.0, 1.0))}, "stops_s"),

@@ -116,6 +116,11 @@ def test_shadow_deepens_smoothly_as_a_person_crosses_the_line_of_sight() -> None
     assert behind(0.5, 0.0) < behind(3.0, 0.0)  # near an antenna the shadow is darker
     assert behind(-0.5, 0.0) == pytest.approx(1.0, abs=1e-3)  # behind the antenna there is none
     assert behind(3.0, 0.0, height_m=0.4) > 0.95  # nor over a low body
+    on_stairs = [Obstacle(np.array([3.0, 0.0]), 0.18, soles_m + 1.8, soles_m) for soles_m in (0.2, 1.0, 1.6)]
+    over, half, under = (float(shadow(corners, [body], WAVELENGTH_M)[0]) for body in on_stairs)
+    assert over == pytest.approx(across[0], abs=0.02)
+    assert 1.0 - half == pytest.approx(0.5 * (1.0 - across[0]), abs=0.02)
+    assert under > 0.95  # nor below the feet
 
 
 def test_two_bodies_shade_more_than_one_and_others_shade_an_echo() -> None:

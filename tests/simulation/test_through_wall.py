@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from delays import bent_delay_s, clean_responses, peak_s
 from numpy.typing import NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.recording import read, write
-from echofuse.simulation.fluctuation import RCS_DEVIATION_DB, EchoFluctuation
+from echofuse.simulation.fluctuation import RCS_DEVIATION_DB, Aspect, EchoFluctuation
 from echofuse.simulation.people import Person
 from echofuse.simulation.scene import Furniture
 from echofuse.simulation.through_wall import ThroughWallSimulation, simulate_through_wall
@@ -33,12 +34,6 @@ BARE = replace(QUIET, room=BARE_ROOM, furniture=())
 Array = NDArray[np.float64]
 
 
-def clean_responses(scene: ThroughWallScene, people: Sequence[Person], time_s: Array, seed: int = 1) -> Array:
-    """(n, n_receivers, n_samples) [count] without noise, sample 0 at time zero."""
-    simulation = ThroughWallSimulation(scene, people, seed=seed)
-    return np.array([[simulation.frontend.receive(c) for c in simulation.channels(float(t))] for t in time_s])
-
-
 def echo_of(scene: ThroughWallScene, people: Sequence[Person], time_s: Array, seed: int = 1) -> Array:
     """What the people change."""
     return clean_responses(scene, people, time_s, seed) - clean_responses(scene, (), np.zeros(1))
@@ -51,30 +46,6 @@ def standing(person_id: int, x_m: float, y_m: float) -> Person:
 
 def walking(start_m: tuple[float, float], end_m: tuple[float, float]) -> Person:
     return Person(person_id=1, walk=Walk(waypoints_m=(start_m, end_m), speed_mps=1.0), radius_m=0.2)
-
-
-def peak_s(response: Array, clock_hz: float) -> float:
-    """Where the trigonometric polynomial through the samples has its largest magnitude."""
-    n, spectrum = len(response), np.fft.rfft(response)
-    spectrum[1:] *= 2.0
-    centre, step = float(np.argmax(np.abs(response))), 1e-2
-    for _ in range(4):
-        grid = centre + step * np.arange(-100, 101)
-        between = np.abs((np.exp(2j * np.pi * np.outer(grid, np.arange(len(spectrum))) / n) @ spectrum).real)
-        centre, step = float(grid[np.argmax(between)]), step / 50.0
-    return centre / clock_hz
-
-
-def bent_delay_s(wall: Wall, antenna_m: Array, target_m: Array) -> float:
-    """Snell's law by bisection on the sine in air."""
-    across = math.hypot(target_m[0] - antenna_m[0], target_m[2] - antenna_m[2])
-    air, w, eps = target_m[1] - antenna_m[1] - wall.thickness_m, wall.thickness_m, wall.permittivity
-    low, high = 0.0, 1.0 - 1e-12
-    for _ in range(100):
-        p = 0.5 * (low + high)
-        short = air * p / math.sqrt(1.0 - p * p) + w * p / math.sqrt(eps - p * p) < across
-        low, high = (p, high) if short else (low, p)
-    return (air / math.sqrt(1.0 - low**2) + w * eps / math.sqrt(eps - low**2)) / SPEED_OF_LIGHT_MPS
 
 
 def test_a_run_is_a_recording_of_the_pipeline(tmp_path: Path) -> None:
@@ -223,19 +194,32 @@ def test_a_person_s_echo_fluctuates_while_walking_and_not_while_standing() -> No
 
 
 def test_fluctuation_has_its_moments_and_one_lobe_of_correlation() -> None:
-    width_m, wavelength_m = 0.48, 0.266
-    lobe_rad = wavelength_m / (2.0 * width_m)
+    width_m, height_m, wavelength_m = 0.48, 0.6, 0.266
+    lobe_rad, upright_rad = wavelength_m / (2.0 * width_m), wavelength_m / (2.0 * height_m)
     pairs = []
     for seed in range(4000):
-        one = EchoFluctuation(np.random.default_rng(seed), width_m=width_m, wavelength_m=wavelength_m)
-        pairs.append([one.amplitude(3.3, 1.0), one.amplitude(3.3, 1.0 + lobe_rad), one.amplitude(3.35, 1.0)])
+        one = EchoFluctuation(
+            np.random.default_rng(seed), width_m=width_m, height_m=height_m, wavelength_m=wavelength_m
+        )
+        here, beside, above = Aspect(1.0, 0.2), Aspect(1.0 + lobe_rad, 0.2), Aspect(1.0, 0.2 + upright_rad)
+        pairs.append(
+            [
+                one.amplitude(3.3, here),
+                one.amplitude(3.3, beside),
+                one.amplitude(3.3, above),
+                one.amplitude(3.35, here),
+            ]
+        )
     amplitude = np.array(pairs)
     decibel = 20.0 * np.log10(amplitude)
     np.testing.assert_allclose(decibel.std(axis=0), RCS_DEVIATION_DB, rtol=0.05)
     np.testing.assert_allclose(np.mean(amplitude**2, axis=0), 1.0, atol=0.05)
     correlation = np.corrcoef(decibel.T)
     assert correlation[0, 1] == pytest.approx(math.exp(-1.0), abs=0.06)
-    assert correlation[0, 2] > 0.7  # 60 ms later
+    assert correlation[0, 2] == pytest.approx(math.exp(-1.0), abs=0.06)
+    assert correlation[0, 3] > 0.7  # 60 ms later
+    flat = EchoFluctuation(np.random.default_rng(0), width_m=width_m, wavelength_m=wavelength_m)
+    assert flat.amplitude(3.3, here) == flat.amplitude(3.3, above)
 
 
 def test_somebody_near_takes_the_light_of_somebody_far() -> None:

@@ -37,11 +37,14 @@ class Person:
     radius_m: float = 0.18  # mean of the torso's half width and half depth; also the shadow's half width
     rcs_m2: float = 0.8  # mean over all directions, whole body
     gait_phase: float = 0.0  # [cycle] at time 0
+    stride_m: float | None = None  # of a cycle of two steps; None: as Boulic et al. 1990 on level ground
     motion: str = "walking"
 
     def __post_init__(self) -> None:
         if not (self.height_m > 0.0 and self.radius_m > 0.0 and self.rcs_m2 >= 0.0):
             raise ValueError("Person: height_m and radius_m must be positive, rcs_m2 not negative")
+        if self.stride_m is not None and not self.stride_m > 0.0:
+            raise ValueError("Person.stride_m: must be positive")
 
     @property
     def centre_height_m(self) -> float:
@@ -53,20 +56,25 @@ class Person:
         return 2.0 * _half_axes(self.radius_m)[1]
 
     @property
+    def torso_height_m(self) -> float:
+        """From hips to shoulders, the share of it in the gait model of Boulic et al. 1990."""
+        return 0.288 * self.height_m
+
+    @property
     def leg_m(self) -> float:
         """From hip to sole, in which Boulic et al. 1990 measure speed and stride."""
         return 0.491 * self.height_m
 
     def gait_cycles(self, time_s: float) -> float:
-        """Cycles of two steps since the start, and the phase then; stride as Boulic et al. 1990."""
+        """Cycles of two steps since the start, and the phase then."""
         nominal_hz = self.walk.speed_mps / self.leg_m
-        stride_m = 1.346 * math.sqrt(nominal_hz) * self.leg_m
+        stride_m = self.stride_m or 1.346 * math.sqrt(nominal_hz) * self.leg_m
         return self.gait_phase + float(self.walk.distance_m(time_s)) / stride_m
 
     def position_m(self, time_s: Array) -> Array:
         """time_s (n,) -> (n, 3)."""
         ground = self.walk.position_m(time_s)
-        return np.column_stack([ground, np.full(len(ground), self.centre_height_m)])
+        return np.column_stack([ground, self.walk.ground_m(time_s) + self.centre_height_m])
 
 
 def walkers(
@@ -165,7 +173,7 @@ class Body:
         left = np.array([-forward[1], forward[0], 0.0])
         frame = np.stack([forward, left, np.array([0.0, 0.0, 1.0])])
         local = self._local_position(time_s, speed_mps) + self._roughness_m[:, np.newaxis] * self._facing
-        ground = np.append(person.walk.position_m(time_s), 0.0)
+        ground = np.append(person.walk.position_m(time_s), person.walk.ground_m(time_s))
         return Scatterers(ground + local @ frame, self._facing @ frame, self._directivity, self._rcs_m2)
 
     def _local_facing(self) -> Array:

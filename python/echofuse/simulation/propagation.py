@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
-from echofuse.simulation.people import Scatterers, visibility
+from echofuse.simulation.people import Person, Scatterers, visibility
 from echofuse.simulation.scene import RadarNode, Scene, Surface
 
 Array = NDArray[np.float64]
@@ -33,7 +33,19 @@ class Obstacle(NamedTuple):
 
     centre_m: Array  # (2,)
     radius_m: float
-    height_m: float
+    top_m: float  # z of the head
+    bottom_m: float = -math.inf  # z of the soles, where something can pass below
+
+
+def obstacle(person: Person, time_s: float) -> Obstacle:
+    """Where somebody's body stands at a time."""
+    ground_m = float(person.walk.ground_m(time_s))
+    return Obstacle(
+        person.walk.position_m(time_s),
+        person.radius_m,
+        ground_m + person.height_m,
+        ground_m if person.walk.rises else -math.inf,
+    )
 
 
 class Ways(NamedTuple):
@@ -155,8 +167,9 @@ def shadow(corners_m: Array, obstacles: list[Obstacle], wavelength_m: float) -> 
         fresnel = np.sqrt(wavelength_m * before * (total - before) / total)
         steep = EDGE_STEEPNESS / np.maximum(fresnel, SHORTEST_FRESNEL_M)
         covered = np.tanh(steep * (body.radius_m - clearance)) + np.tanh(steep * (body.radius_m + clearance))
-        below_head = body.height_m - (start[..., 2] + part * along[..., 2])
-        covered *= 0.25 * (1.0 + np.tanh(steep * below_head)) * (length > 0.0)
+        height_m = start[..., 2] + part * along[..., 2]
+        covered *= 0.25 * (1.0 + np.tanh(steep * (body.top_m - height_m))) * (length > 0.0)
+        covered *= 0.5 + 0.5 * np.tanh(steep * (height_m - body.bottom_m))
         factor *= 1.0 - (1.0 - DEEPEST_SHADOW) * np.max(covered, axis=1)
     return factor
 

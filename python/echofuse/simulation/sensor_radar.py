@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from echofuse.recording import NodeRecording, PersonTruth, Pulse, Recording
 from echofuse.simulation.people import Body, Person, walkers
 from echofuse.simulation.propagation import (
-    Obstacle,
     Paths,
     Station,
     Ways,
     echo_paths,
+    obstacle,
     shadow,
     static_ways,
     station,
@@ -102,10 +102,7 @@ class SensorRadarSimulation:
     def paths(self, which: int, time_s: float) -> Paths:
         """Every path of a node at a time: the room as the people shade it, and the people's echoes."""
         listener, wavelength_m = self._listeners[which], self.scene.wavelength_m()
-        obstacles = [
-            Obstacle(person.walk.position_m(time_s), person.radius_m, person.height_m)
-            for person in self.people
-        ]
+        obstacles = [obstacle(person, time_s) for person in self.people]
         static = listener.static
         delays = [static.delay_s]
         gains = [static.gain * shadow(static.corners_m, obstacles, wavelength_m)]

@@ -62,8 +62,8 @@ def site_people(scene: Scene, count: int) -> tuple[Person, ...]:
     """Return the case study's people, their walks stretched from its area to the scene's, their pace kept."""
     model = sensor_radar_scene()
 
-    def stretched(point_m: tuple[float, float]) -> tuple[float, float]:
-        x, y = (
+    def stretched(point_m: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(
             low + (value - model_low) / (model_high - model_low) * (high - low)
             for value, model_low, model_high, low, high in zip(
                 point_m,
@@ -74,7 +74,6 @@ def site_people(scene: Scene, count: int) -> tuple[Person, ...]:
                 strict=True,
             )
         )
-        return x, y
 
     return tuple(
         replace(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.recording import NodeRecording, Pulse, Recording
-from echofuse.simulation.fluctuation import EchoFluctuation
+from echofuse.simulation.fluctuation import Aspect, EchoFluctuation
 from echofuse.simulation.m_sequence import MSequenceFrontend
 from echofuse.simulation.people import Body, Person, Scatterers, visibility
 from echofuse.simulation.propagation import (
@@ -20,6 +20,7 @@ from echofuse.simulation.propagation import (
     Paths,
     crossing,
     friis_gain,
+    obstacle,
     radar_gain,
     reflected_corners,
     shadow,
@@ -64,22 +65,30 @@ class ThroughWallSimulation:
         """power_up_s: when the device loses its power for a moment and begins anew at another chip."""
         if len({person.person_id for person in people}) != len(people):
             raise ValueError("people: each needs a person_id of its own")
+        floor_m = scene.room.lower_m[2]
         for person in people:
+            if not person.walk.rises and floor_m != 0.0:
+                raise ValueError(
+                    f"people: person {person.person_id} needs waypoints (x, y, z): "
+                    f"the floor is at z = {floor_m:g} m"
+                )
             if not scene.holds(person):
                 raise ValueError(f"people: person {person.person_id} walks out of the room")
         self.scene, self.people, self.seed = scene, tuple(people), seed
         self.power_up_s = tuple(sorted(power_up_s))
         self.frontend = MSequenceFrontend(scene.radar)
         self._bodies = [Body(person, self._rng(Purpose.BODY, person.person_id, 0)) for person in people]
+        places = [scene.nodes[0].tx_position_m, *(node.rx_position_m for node in scene.nodes)]
+        one_height = len({z for _, _, z in places}) == 1  # then all look from the same elevation
         self._fluctuations = [
             EchoFluctuation(
                 self._rng(Purpose.BODY, person.person_id, 1),
                 width_m=person.width_m,
+                height_m=0.0 if one_height else person.torso_height_m,
                 wavelength_m=scene.radar.wavelength_m,
             )
             for person in people
         ]
-        places = [scene.nodes[0].tx_position_m, *(node.rx_position_m for node in scene.nodes)]
         self._antennas = [station(place, scene.room.surfaces()) for place in places]
         self._image_m = np.stack([antenna.image_m for antenna in self._antennas])  # (n_antennas, n_images, 3)
         self._outside = [self.spectrum(outside_paths(scene, node)) for node in scene.nodes]
@@ -104,10 +113,7 @@ class ThroughWallSimulation:
 
     def channels(self, time_s: float) -> list[Spectrum]:
         """Gain of each receiver's channel over frequency, (n_bins,): cross-talk, wall, room, people."""
-        obstacles = [
-            Obstacle(person.walk.position_m(time_s), person.radius_m, person.height_m)
-            for person in self.people
-        ]
+        obstacles = [obstacle(person, time_s) for person in self.people]
         bodies = [body.scatterers(time_s) for body in self._bodies]
         legs = [
             self._legs(body, obstacles[:which] + obstacles[which + 1 :]) for which, body in enumerate(bodies)
@@ -118,12 +124,12 @@ class ThroughWallSimulation:
             channel = outside + self._ringing * self.spectrum(Paths(static.delay_s, shaded))
             for which, (body, its_legs) in enumerate(zip(bodies, legs, strict=True)):
                 sine = np.mean(its_legs.rays.sine[[0, rx], 0], axis=1)
-                east, north, _ = its_legs.towards[0, 0] + its_legs.towards[rx, 0]
+                east, north, up = its_legs.towards[0, 0] + its_legs.towards[rx, 0]
+                aspect = Aspect(math.atan2(north, east), math.atan2(up, math.hypot(east, north)))
+                gait_cycles = self.people[which].gait_cycles(time_s)
                 channel += (
                     self._two_passes(float(sine[0]), float(sine[1]))
-                    * self._fluctuations[which].response(
-                        self.people[which].gait_cycles(time_s), math.atan2(north, east), frequency_hz
-                    )
+                    * self._fluctuations[which].response(gait_cycles, aspect, frequency_hz)
                     * self.spectrum(self._echo(body, its_legs, rx))
                 )
             found.append(channel)

@@ -46,13 +46,18 @@ class ThroughWallScene:
         return self.radar.response_period_s
 
     def holds(self, person: Person) -> bool:
-        """Whether a person's whole walk keeps the torso inside the room."""
-        sides = list(zip(self.room.lower_m[:2], self.room.upper_m[:2], strict=True))
-        return all(
-            low + person.radius_m <= value <= high - person.radius_m
-            for point in person.walk.waypoints_m
-            for value, (low, high) in zip(point, sides, strict=True)
-        )
+        """Whether a person's whole walk keeps the torso between the walls, and soles and head in the room."""
+        (left, front, floor), (right, back, ceiling) = self.room.lower_m, self.room.upper_m
+        margin_m = person.radius_m
+        for point in person.walk.waypoints_m:
+            ground_m = point[2] if person.walk.rises else 0.0
+            if not (
+                left + margin_m <= point[0] <= right - margin_m
+                and front + margin_m <= point[1] <= back - margin_m
+                and floor <= ground_m <= ceiling - person.height_m
+            ):
+                return False
+        return True
 
 
 ANTENNA_HEIGHT_M = 1.2  # the device before somebody's chest
@@ -81,6 +86,20 @@ CLASSROOM = (
 )
 
 
+def antenna_cross(tx_m: Point, spacing_m: float, n_receivers: int) -> tuple[RadarNode, ...]:
+    """Receivers around one transmitter: rx1 left, rx2 right, and of four also rx3 below and rx4 above."""
+    if n_receivers not in (2, 4):
+        raise ValueError(f"n_receivers: {n_receivers}, expected 2 or 4")
+    if not spacing_m > 0.0:
+        raise ValueError(f"spacing_m: {spacing_m}, expected a positive distance")
+    x, y, z = tx_m
+    arms = ((-spacing_m, 0.0), (spacing_m, 0.0), (0.0, -spacing_m), (0.0, spacing_m))[:n_receivers]
+    return tuple(
+        RadarNode(name=f"rx{index}", node_id=index, tx_position_m=tx_m, rx_position_m=(x + right, y, z + up))
+        for index, (right, up) in enumerate(arms, start=1)
+    )
+
+
 def through_wall_scene(
     *,
     n_receivers: int = 2,
@@ -92,22 +111,10 @@ def through_wall_scene(
 ) -> ThroughWallScene:
     """The paper's classroom behind a wall, Tx at (0, 0): two receivers at its sides, or a cross of four.
 
-    Receivers are rx1 at x = -spacing, rx2 at +spacing, rx3 below and rx4 above. For others, replace `nodes`.
+    For receivers anywhere else before the wall, replace `nodes`.
     """
-    if n_receivers not in (2, 4):
-        raise ValueError(f"n_receivers: {n_receivers}, expected 2 or 4")
     wall = wall or Wall()
-    tx_m: Point = (0.0, 0.0, ANTENNA_HEIGHT_M)
-    arms = ((-spacing_m, 0.0), (spacing_m, 0.0), (0.0, -spacing_m), (0.0, spacing_m))[:n_receivers]
-    nodes = tuple(
-        RadarNode(
-            name=f"rx{index}",
-            node_id=index,
-            tx_position_m=tx_m,
-            rx_position_m=(right, 0.0, ANTENNA_HEIGHT_M + up),
-        )
-        for index, (right, up) in enumerate(arms, start=1)
-    )
+    nodes = antenna_cross((0.0, 0.0, ANTENNA_HEIGHT_M), spacing_m, n_receivers)
     half_m, front_m = ROOM_WIDTH_M / 2.0, wall.back_m
     room = Room(
         lower_m=(-half_m, front_m, 0.0),
