@@ -32,3 +32,16 @@ def test_taylor_series_3d(capsys: pytest.CaptureFixture[str], monkeypatch: pytes
         equal = len(set(deviations.split(", "))) == 1
         assert planar == pytest.approx(refined, rel=0.01) if equal else planar > 1.1 * refined
         assert approximate > 0.99 * planar
+
+
+def test_wall_compensation(capsys: pytest.CaptureFixture[str]) -> None:
+    runpy.run_path(str(EXAMPLES / "wall_compensation.py"), run_name="__main__")
+    rows = [line.strip("| ").split(" | ") for line in capsys.readouterr().out.splitlines()[2:]]
+    mean_m = {tuple(row[:3]): float(row[3]) for row in rows}
+    largest_m = {tuple(row[:3]): float(row[5]) for row in rows}
+    assert len(rows) == 15
+    assert largest_m["second_kind", "true", "true"] <= 0.005
+    assert mean_m["none", "true", "true"] > 3.0 * mean_m["first_kind", "true", "true"] > 0.1
+    wrong = {(thickness, permittivity) for _, thickness, permittivity in mean_m} - {("true", "true")}
+    for wall in wrong:
+        assert 0.02 < mean_m["second_kind", *wall] < mean_m["first_kind", *wall]
