@@ -27,7 +27,12 @@ def build_parser() -> argparse.ArgumentParser:
     run.add_argument("case", help=f"one of {', '.join(CASES)}, or a SITE.toml")
     run.add_argument("--seed", type=_natural, default=0, help="of everything random (default 0)")
     run.add_argument("--seeds", type=_seed_range, help="FIRST-LAST: a table over many seeds, no report")
-    run.add_argument("--people", type=_people, default=1, help="how many people walk, 0 to 5 (default 1)")
+    run.add_argument(
+        "--people", type=_people, help="how many people walk, 0 to 5 (default 1); behind a wall 0 to 4 (2)"
+    )
+    run.add_argument(
+        "--duration", type=_positive, metavar="SECONDS", help="of the walk (default: 6.1; behind a wall 60)"
+    )
     run.add_argument("--out", type=Path, help="folder of the run (default runs/CASE-SEED)")
     run.add_argument("--no-report", action="store_true", help="tables only, no pictures")
     run.add_argument(

@@ -4,28 +4,53 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.evaluation.behind_wall import (
+    close_in_path,
+    false_track_ids,
+    ghosts_per_frame,
+    path_behind_wall_m,
+    position_error_bound_behind_wall_m,
+    tracked_fractions,
+)
 from echofuse.evaluation.limits import position_error_bound_m
 from echofuse.evaluation.path import evaluate_path
-from echofuse.evaluation.tracking import evaluate_tracks, true_positions
+from echofuse.evaluation.tracking import CONFIRMED, evaluate_tracks, match_tracks, true_positions
 from echofuse.recording import NodeRecording, PersonTruth
 from echofuse.result import RunResult
+from echofuse.simulation.wall import Wall
+from echofuse.site import PIPELINES, Site
 
 PATH_MATCH_M = 0.6  # a detection this near a person's path is the person's
+GHOST_PREFIX = {"assignment": "paired_", "all_pairs": "all_pairs_"}  # of a metric, by pairing rule
 SETTLE_S = 1.0  # of a simulated run; tracks need some frames to begin
+SETTLE_BEHIND_WALL_S = 2.0  # 24 responses of 0.074 s learn time zero and background; then tracks begin
+
+
+def settle_s(pipeline: str) -> float:
+    """Return how long after the first frame a run of a pipeline is evaluated from [s]."""
+    return SETTLE_BEHIND_WALL_S if PIPELINES[pipeline].behind_wall else SETTLE_S
 
 
 def measure(result: RunResult) -> None:
-    """Fill `result.metrics` and `result.baseline_metrics`."""
+    """Fill `result.metrics` and `result.baseline_metrics`; without positions, with what paths alone tell."""
     truth, site = result.recording.truth, result.site
+    if result.why_no_positions is not None:
+        if truth:
+            result.metrics["path_error_std_m"] = path_error_std_m(result)
+        return
     if truth or site.truth is None:
         frame_time_s = result.frame_time_us.astype(np.float64) * 1e-6
         sigma_m = path_error_std_m(result)
         bound_m = _bounds_m(result, frame_time_s, sigma_m)
+        after_s = settle_s(site.pipeline)
         for tracks, metrics in _both(result):
-            scores = evaluate_tracks(tracks, frame_time_s, truth, bound_m=bound_m, settle_s=SETTLE_S)
+            scores = evaluate_tracks(tracks, frame_time_s, truth, bound_m=bound_m, settle_s=after_s)
             metrics.update(scores.as_dict() if truth else _without_truth(scores.as_dict()))
+            if PIPELINES[site.pipeline].behind_wall:
+                metrics.update(_behind_wall(result, tracks, frame_time_s))
         if truth:
             result.metrics["path_error_std_m"] = sigma_m
+            result.metrics.update(_ghosts(result, frame_time_s))
     else:
         path = site.truth
         n_frames = len(result.frame_time_us)
@@ -47,7 +72,8 @@ def path_error_std_m(result: RunResult) -> float:
     for index, node in enumerate(nodes):
         rows = result.detections[result.detections["node"] == index]
         positions, present = true_positions(people, rows["time_us"] * 1e-6)
-        error = rows["delay_s"][:, np.newaxis] * SPEED_OF_LIGHT_MPS - true_path_m(node, positions, people)
+        path_m = true_path_m(node, positions, people, wall_of(result.site))
+        error = rows["delay_s"][:, np.newaxis] * SPEED_OF_LIGHT_MPS - path_m
         error[~present] = np.inf
         nearest = error[np.arange(len(rows)), np.argmin(np.abs(error), axis=1)]
         errors.append(nearest[np.abs(nearest) < PATH_MATCH_M])
@@ -57,13 +83,33 @@ def path_error_std_m(result: RunResult) -> float:
 
 
 def true_path_m(
-    node: NodeRecording, positions_m: NDArray[np.float64], people: tuple[PersonTruth, ...]
+    node: NodeRecording,
+    positions_m: NDArray[np.float64],
+    people: tuple[PersonTruth, ...],
+    wall: Wall | None = None,
 ) -> NDArray[np.float64]:
-    """Return the paths Tx -> person -> Rx of positions_m (n, n_people, 2), at the people's heights [m]."""
-    heights = np.array([float(np.mean(person.position_m[:, 2])) for person in people])
-    points = np.dstack([positions_m, np.broadcast_to(heights, positions_m.shape[:2])])
+    """Return the paths Tx -> person -> Rx of positions_m (n, n_people, 2), at the people's heights [m].
+
+    wall: what the rays are refracted by, with its delay, if there is one between.
+    """
+    points = _at_heights(positions_m, people)
+    if wall is not None:
+        return path_behind_wall_m(points, node.tx_position_m, node.rx_position_m, wall)
     legs = (np.linalg.norm(points - end, axis=-1) for end in (node.tx_position_m, node.rx_position_m))
     return np.asarray(sum(legs))
+
+
+def wall_of(site: Site) -> Wall | None:
+    """Return the wall between a site's antennas and its people, None when there is none."""
+    if site.wall is None or not PIPELINES[site.pipeline].behind_wall:
+        return None
+    return Wall(thickness_m=site.wall.thickness_m, permittivity=site.wall.relative_permittivity)
+
+
+def _at_heights(positions_m: NDArray[np.float64], people: tuple[PersonTruth, ...]) -> NDArray[np.float64]:
+    """Return (n, n_people, 3) of positions in the plane (n, n_people, 2) [m]."""
+    heights = np.array([float(np.mean(person.position_m[:, 2])) for person in people])
+    return np.dstack([positions_m, np.broadcast_to(heights, positions_m.shape[:2])])
 
 
 def _bounds_m(
@@ -72,11 +118,63 @@ def _bounds_m(
     """Return the bound of one frame's position error where each person was, (n_frames, n_people) [m]."""
     if not np.isfinite(sigma_m) or sigma_m <= 0.0:
         return None
-    positions, present = true_positions(result.recording.truth, frame_time_s)
-    tx_m = np.array([node.tx_position_m[:2] for node in result.site.nodes])
-    rx_m = np.array([node.rx_position_m[:2] for node in result.site.nodes])
-    bound_m = position_error_bound_m(np.nan_to_num(positions), tx_m, rx_m, sigma_m)
+    people, nodes, wall = result.recording.truth, result.site.nodes, wall_of(result.site)
+    positions, present = true_positions(people, frame_time_s)
+    place_m = np.nan_to_num(positions)
+    tx_m, rx_m = (
+        np.array([getattr(node, end) for node in nodes]) for end in ("tx_position_m", "rx_position_m")
+    )
+    if wall is None:
+        bound_m = position_error_bound_m(place_m, tx_m[:, :2], rx_m[:, :2], sigma_m)
+    else:
+        at_m = _at_heights(place_m, people)
+        bound_m = position_error_bound_behind_wall_m(at_m, tx_m, rx_m, sigma_m, wall)
     return np.where(present, bound_m, np.nan)
+
+
+def _behind_wall(
+    result: RunResult, tracks: NDArray[np.void], frame_time_s: NDArray[np.float64]
+) -> dict[str, float]:
+    """Return what is asked of a through-wall pipeline beside the metrics of tracks (docs/through_wall.md)."""
+    people = result.recording.truth
+    matches = match_tracks(tracks, frame_time_s, people, settle_s=settle_s(result.site.pipeline))
+    duration_s = float(np.ptp(frame_time_s[matches.frames])) if matches.frames.size else 0.0
+    confirmed = tracks[(tracks["state"] == CONFIRMED) & np.isin(tracks["frame"], matches.frames)]
+    found = {"confirmed_tracks": float(len(np.unique(confirmed["id"])))}
+    if not people:
+        return found
+    positions, _ = true_positions(people, frame_time_s[matches.frames])
+    known = [node for node in result.recording.nodes if node.node_id in {p.id for p in result.site.nodes}]
+    paths_m = [true_path_m(node, positions, people, wall_of(result.site)) for node in known]
+    close = close_in_path(np.mean(paths_m, axis=0), matches.present)
+    shares, crossing = tracked_fractions(matches), tracked_fractions(matches, close)
+    known_shares = np.isfinite(shares)
+    false_tracks = len(false_track_ids(tracks, matches))
+    return found | {
+        "worst_tracked_fraction": _least(shares),
+        "mean_tracked_fraction": float(np.mean(shares[known_shares])) if known_shares.any() else np.nan,
+        "crossing_tracked_fraction": _least(crossing),
+        "crossing_fraction": float(np.mean(close[matches.present])) if matches.present.any() else np.nan,
+        "false_tracks_per_100_s": 100.0 * false_tracks / duration_s if duration_s > 0.0 else float("nan"),
+    }
+
+
+def _ghosts(result: RunResult, frame_time_s: NDArray[np.float64]) -> dict[str, float]:
+    """Return the ghosts a response of the run's own points, of pairing alone, and of all pairs."""
+    if not PIPELINES[result.site.pipeline].behind_wall:
+        return {}
+    settled_s = frame_time_s[:1] + settle_s(result.site.pipeline)
+    frames = np.flatnonzero(frame_time_s >= settled_s) if frame_time_s.size else np.zeros(0, np.intp)
+    tables = {"": result.points} | {GHOST_PREFIX[way]: rows for way, rows in result.compared_points.items()}
+    return {
+        f"{prefix}ghosts_per_response": ghosts_per_frame(rows, frames, frame_time_s, result.recording.truth)
+        for prefix, rows in tables.items()
+    }
+
+
+def _least(shares: NDArray[np.float64]) -> float:
+    """Return the least share of those that are known."""
+    return float(np.min(shares[np.isfinite(shares)], initial=np.inf)) if np.isfinite(shares).any() else np.nan
 
 
 def _both(result: RunResult) -> list[tuple[NDArray[np.void], dict[str, float]]]:

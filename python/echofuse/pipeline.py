@@ -14,10 +14,10 @@ from echofuse import _core
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
 from echofuse.metrics import measure
-from echofuse.recording import NodeRecording, Recording
+from echofuse.recording import TRACK_DTYPE, NodeRecording, Recording
 from echofuse.result import RunResult
 from echofuse.run_tables import FrameOutput, NodeOutput, RunTables, Scan, Taps
-from echofuse.site import Site, SiteNode, apply_settings
+from echofuse.site import PIPELINES, Site, SiteNode, apply_settings
 
 if TYPE_CHECKING:
     from echofuse.emulation.deadline import Processor
@@ -38,27 +38,31 @@ def scans_in_time_order(nodes: Sequence[NodeRecording]) -> list[Scan]:
     )
 
 
-def node_config(site: Site, place: SiteNode, source: NodeRecording) -> "_core.SensorRadarNodeConfig":
-    """Return a node's configuration: what its recording says, then [pipeline], then its own table."""
-    config = _core.SensorRadarNodeConfig()
+def node_config(site: Site, place: SiteNode, source: NodeRecording) -> Any:
+    """Return a node's configuration: what its recording says, then [pipeline], then its own table.
+
+    It is of the class that the site's pipeline names: `_core.SensorRadarNodeConfig` or another.
+    """
+    config = PIPELINES[site.pipeline].node_config()
     config.node_id = source.node_id
     config.n_samples = source.scans.shape[1]
     config.sample_rate_hz = source.sample_rate_hz
-    config.first_sample_s = source.first_sample_s
+    if hasattr(config, "first_sample_s"):  # else the node finds time zero itself
+        config.first_sample_s = source.first_sample_s
     config.baseline_m = math.dist(place.tx_position_m, place.rx_position_m)
     apply_settings(config, site.settings)
     apply_settings(config, place.settings())
     return config
 
 
-def nominal_source(place: SiteNode) -> NodeRecording:
+def nominal_source(site: Site, place: SiteNode) -> NodeRecording:
     """Return a node that has recorded nothing yet, with the default scan length and sample rate."""
-    nominal = _core.SensorRadarNodeConfig()
+    nominal = PIPELINES[site.pipeline].node_config()
     return NodeRecording(
         name=place.name,
         node_id=place.id,
         sample_rate_hz=nominal.sample_rate_hz,
-        first_sample_s=nominal.first_sample_s,
+        first_sample_s=getattr(nominal, "first_sample_s", 0.0),
         tx_position_m=np.array(place.tx_position_m),
         rx_position_m=np.array(place.rx_position_m),
         scans=np.zeros((0, nominal.n_samples), np.float32),
@@ -66,9 +70,9 @@ def nominal_source(place: SiteNode) -> NodeRecording:
     )
 
 
-def hub_config(site: Site) -> "_core.SensorRadarHubConfig":
-    """Return the hub's configuration: the geometry of the site, then [pipeline]."""
-    config = _core.SensorRadarHubConfig()
+def hub_config(site: Site) -> Any:
+    """Return the hub's configuration, of the pipeline's class: the geometry of the site, then [pipeline]."""
+    config = PIPELINES[site.pipeline].hub_config()
     config.set_nodes(
         [node.id for node in site.nodes],
         np.array([node.tx_position_m[:2] for node in site.nodes], np.float32),
@@ -76,26 +80,34 @@ def hub_config(site: Site) -> "_core.SensorRadarHubConfig":
     )
     x_min, y_min, x_max, y_max = site.bounds_m
     config.set_area(x_min, y_min, x_max, y_max)
-    config.phd.area_m2 = (x_max - x_min) * (y_max - y_min)
+    if hasattr(config, "phd"):
+        config.phd.area_m2 = (x_max - x_min) * (y_max - y_min)
+    if hasattr(config, "line_locator") and site.wall is not None:
+        config.line_locator.wall.thickness_m = site.wall.thickness_m
+        config.line_locator.wall.relative_permittivity = site.wall.relative_permittivity
     apply_settings(config, site.settings)
     return config
 
 
 class SensorRadar:
-    """Nodes and hub of one site, fed scan by scan."""
+    """Nodes and hub of one site, of any pipeline, fed scan by scan."""
 
     def __init__(self, site: Site, sources: Sequence[NodeRecording]) -> None:
         self._sources = tuple(sources)
         places = places_of(site, sources)
-        self._nodes: list[_core.SensorRadarNode | None] = []
+        self._nodes: list[Any] = []  # compiled nodes; None where the site knows none
         self._pulses: list[int] = []  # that make one scan; a report's number counts scans
         for source in sources:
             place = places.get(source.node_id)
             config = None if place is None else node_config(site, place, source)
             self._nodes.append(None if config is None else configured_node(site, config, source))
-            self._pulses.append(1 if config is None else config.pulse_integrator.pulses_per_scan)
-        self.hub_config = hub_config(site)
-        self.hub = configured_hub(site, self.hub_config)
+            self._pulses.append(pulses_per_scan(config))
+        #: None where there are too few nodes for a hub.
+        self.hub_config: Any = None
+        self.hub: Any = NodesAlone()
+        if why_no_positions(site, sources) is None:
+            self.hub_config = hub_config(site)
+            self.hub = configured_hub(site, self.hub_config)
 
     def scan(self, scan: Scan, samples: NDArray[Any], *, taps: bool = False) -> NodeOutput:
         """Give a node its next scan (n_samples,) [count], and the hub what the node reports.
@@ -124,12 +136,13 @@ class SensorRadar:
             if closed is None:
                 return
             time_us, _, tracks = closed
-            yield FrameOutput(time_us=time_us, points=taps["points"], tracks=tracks)
+            yield FrameOutput(time_us=time_us, points=taps["points"], tracks=tracks, taps=taps)
 
     def counters(self) -> dict[str, dict[str, int]]:
         """Return what hub and nodes counted, by name."""
         known = zip(self._sources, self._nodes, strict=True)
-        return {"hub": self.hub.counters()} | {
+        hub = self.hub.counters()
+        return ({"hub": hub} if hub else {}) | {
             source.name: node.counters() for source, node in known if node is not None
         }
 
@@ -139,6 +152,30 @@ class SensorRadar:
         )
         # The hub counts what it does not take; there is nothing to do about it here.
         self.hub.receive(node_id, frame, delay_s, weight, now_us)
+
+
+class NodesAlone:
+    """Stands for the hub where there are too few nodes for positions: a frame a scan time, and no tracks."""
+
+    def __init__(self) -> None:
+        self._time_us: int | None = None  # of the frame that is open
+        self._frames = 0
+
+    def receive(self, *report: Any) -> None:
+        """Open the frame of a report, which ends with the time."""
+        self._time_us = report[-1]
+
+    def poll_with_taps(self, now_us: int) -> tuple[None, tuple[int, int, NDArray[np.void]] | None, Taps]:
+        """Close the open frame once its time has passed."""
+        if self._time_us is None or now_us <= self._time_us:
+            return None, None, {}
+        closed = (self._time_us, self._frames, np.zeros(0, TRACK_DTYPE))
+        self._time_us, self._frames = None, self._frames + 1
+        return None, closed, {"points": np.zeros((0, 4), np.float32)}
+
+    def counters(self) -> dict[str, int]:
+        """Return nothing: there is no hub."""
+        return {}
 
 
 NO_DETECTIONS = np.dtype([("delay_s", "f4"), ("weight", "f4")])
@@ -162,6 +199,7 @@ def process_recording(
     from echofuse.emulation.deadline import Processor
     from echofuse.emulation.emulated_radar import EmulatedRadar
 
+    check_positions(recording, site)
     with EmulatedRadar(site, recording.nodes, target) as radar:
         result = _process(radar, recording, site, taps=taps)
         result.target = target
@@ -185,6 +223,7 @@ def _process(
     for frame in radar.frames(end_us):
         tables.add_frame(frame)
     result = tables.result(site, radar.counters(), shown)
+    result.why_no_positions = why_no_positions(site, recording.nodes)
     measure(result)
     return result
 
@@ -206,19 +245,41 @@ def places_of(site: Site, sources: Sequence[NodeRecording]) -> dict[int, SiteNod
     return places
 
 
-def configured_hub(site: Site, config: "_core.SensorRadarHubConfig") -> "_core.SensorRadarHub":
+def why_no_positions(site: Site, sources: Sequence[NodeRecording]) -> str | None:
+    """Return why these nodes cannot say where people are, None when they can."""
+    least = PIPELINES[site.pipeline].least_nodes
+    places = {place.id for place in site.nodes}
+    known = [source.name for source in sources if source.node_id in places]
+    if len(known) >= least:
+        return None
+    here = f"{len(known)} of them: {', '.join(known)}" if len(known) > 1 else known[0] if known else "none"
+    return f"a position takes {least} receivers that recording and site both know, here is {here}"
+
+
+def check_positions(recording: Recording, site: Site) -> None:
+    """Raise when a recording and its site have too few nodes in common for a hub."""
+    why = why_no_positions(site, recording.nodes)
+    if why is not None:
+        raise InputError(problem(site.name, "node", f"enough nodes for a hub: {why}"))
+
+
+def pulses_per_scan(config: Any) -> int:
+    """Return how many scans of a recording a node makes one of."""
+    integrator = getattr(config, "pulse_integrator", None)
+    return 1 if integrator is None else int(integrator.pulses_per_scan)
+
+
+def configured_hub(site: Site, config: Any) -> Any:
     """Return a hub that has begun nothing yet."""
-    hub = _core.SensorRadarHub()
+    hub = PIPELINES[site.pipeline].new_hub()
     if hub.configure(config) != _core.Status.ok:
         raise InputError(problem(site.name, f"pipeline.{config.invalid_field()}", "a possible value"))
     return hub
 
 
-def configured_node(
-    site: Site, config: "_core.SensorRadarNodeConfig", source: NodeRecording
-) -> "_core.SensorRadarNode":
+def configured_node(site: Site, config: Any, source: NodeRecording) -> Any:
     """Return a node that knows the empty room if its recording does."""
-    node = _core.SensorRadarNode()
+    node = PIPELINES[site.pipeline].new_node()
     if node.configure(config) != _core.Status.ok:
         key = config.invalid_field()
         raise InputError(
@@ -228,11 +289,12 @@ def configured_node(
                 f"what scans of {source.scans.shape[1]} samples at {source.sample_rate_hz:g} Hz allow",
             )
         )
-    for scan in source.reference if source.reference is not None else ():
-        if node.set_empty_room(np.ascontiguousarray(scan, np.float32)) != _core.Status.ok:
-            raise InputError(
-                problem(site.name, f"node {source.name}: reference", "finite scans of the empty room")
-            )
+    if source.reference is not None and hasattr(node, "set_empty_room"):
+        for scan in source.reference:
+            if node.set_empty_room(np.ascontiguousarray(scan, np.float32)) != _core.Status.ok:
+                raise InputError(
+                    problem(site.name, f"node {source.name}: reference", "finite scans of the empty room")
+                )
     return node
 
 

@@ -1,4 +1,4 @@
-"""What a run of the `sensor_radar` pipeline leaves behind: the tables of reports, metrics and files."""
+"""What a run of a pipeline leaves behind: the tables of reports, metrics and files."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -29,6 +29,18 @@ class NodeStack:
 
 
 @dataclass(kw_only=True)
+class ResponseStack:
+    """One through-wall receiver's responses after its stages, a row a response (the paper's Figs. 5, 6)."""
+
+    #: (n_responses, n_samples) each, by tap: rotated and subtracted [count], enhanced [1]; zero if not judged
+    images: dict[str, NDArray[np.float32]]
+    decisions: NDArray[np.uint8]  # (n_responses, n_samples) detector output
+    #: per response (n, 2), by tap: delay [s] and weight of target_traces, leading_edges and detections
+    delays: dict[str, list[NDArray[np.float64]]]
+    delay_s: NDArray[np.float64]  # (n_samples,) propagation delay of each sample once rotated [s]
+
+
+@dataclass(kw_only=True)
 class RunResult:
     """Everything that one run said, frame by frame."""
 
@@ -38,14 +50,21 @@ class RunResult:
     detections: NDArray[np.void]  # DETECTION_DTYPE
     points: NDArray[np.void]  # POINT_DTYPE
     tracks: NDArray[np.void]  # TRACK_DTYPE, the configured tracker
-    baseline_tracks: NDArray[np.void]  # TRACK_DTYPE, Kalman filter with global nearest neighbour, same points
+    baseline_tracks: NDArray[np.void]  # TRACK_DTYPE, of a simpler way on the same frames: `baselines`
     metrics: dict[str, float]  # flat, names carry units (see `design.md` section 7)
     baseline_metrics: dict[str, float]
+    #: POINT_DTYPE by way: what the simpler ways located
+    compared_points: dict[str, NDArray[np.void]] = field(default_factory=dict)
+    #: per frame (n, n_nodes + 1), of a line of antennas: each node's path [m], and the couple's track or 0
+    couples: list[NDArray[np.float32]] = field(default_factory=list)
     target: str = "inprocess"  # what it ran on
     counters: dict[str, dict[str, int]] = field(
         default_factory=dict
     )  # "hub" and each node's name -> counter -> count
-    stacks: dict[str, NodeStack] = field(default_factory=dict)  # by node name, when taps were asked for
+    #: by node name, when taps were asked for; `responses` of a through-wall pipeline, `stacks` of another one
+    stacks: dict[str, NodeStack] = field(default_factory=dict)
+    responses: dict[str, ResponseStack] = field(default_factory=dict)
+    why_no_positions: str | None = None  # when there were too few nodes for a hub
     emulation: "Emulation | None" = None  # faults and counters, of an emulated run
     shown_frame: int = 0  # the frame whose stages the report shows
     shown_taps: dict[str, dict[str, NDArray[Any]]] = field(

@@ -2,19 +2,24 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from echofuse import _core
-from echofuse.errors import InputError, problem
+from echofuse.baselines import baseline_of
 from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, Recording
-from echofuse.result import POINT_DTYPE, NodeStack, RunResult
+from echofuse.result import POINT_DTYPE, NodeStack, ResponseStack, RunResult
 from echofuse.site import Site
 
 __all__ = ["FrameOutput", "NodeOutput", "RunTables", "Scan", "Taps"]
 
 Taps = dict[str, NDArray[np.float32]]
+
+IMAGES = ("rotated", "subtracted", "enhanced")  # of a through-wall receiver
+TRACES = ("target_traces", "leading_edges")  # in samples there
+#: Taps of nodes that are kept of every scan, for the report.
+STACKED = ("residual", "decisions", "range_clusters", *IMAGES, *TRACES, "detections")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,14 +46,16 @@ class FrameOutput:
     time_us: int
     points: NDArray[np.float32]  # (n, 4) x [m], y [m], members, weight
     tracks: NDArray[np.void]
+    taps: Taps = field(default_factory=dict)  # of the hub
 
 
 class RunTables:
     """Collects the rows of a run."""
 
-    def __init__(self, recording: Recording, config: "_core.SensorRadarHubConfig") -> None:
+    def __init__(self, recording: Recording, config: Any) -> None:
+        """config: the hub's, None where there is no hub."""
         self._recording = recording
-        self._frame_period_s = config.frame_period_s
+        self._frame_period_s = 0.1 if config is None else float(config.frame_period_s)
         self._frame_time_us: list[int] = []
         self._points: list[NDArray[np.void]] = []
         self._tracks: list[NDArray[np.void]] = []
@@ -57,10 +64,9 @@ class RunTables:
         self._detections: list[NDArray[np.void]] = []
         self._taps: dict[int, list[Taps]] = {}
         self._shown: dict[str, Taps] = {}
-        self._kalman = _core.KalmanTracker()
-        if self._kalman.configure(config.tracks) != _core.Status.ok:
-            key = config.tracks.invalid_field()
-            raise InputError(problem("site", f"pipeline.tracks.{key}", "a possible value"))
+        self._compared = baseline_of(recording.pipeline, config)
+        self._compared_points: dict[str, list[NDArray[np.void]]] = {}
+        self._couples: list[NDArray[np.float32]] = []
 
     def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
         """Take what a node said of a scan; `shown` when the report's pictures are of this one."""
@@ -69,9 +75,8 @@ class RunTables:
         rows["delay_s"], rows["weight"] = output.detections["delay_s"], output.detections["weight"]
         self._waiting.append(rows)
         if output.taps:
-            keep = ("residual", "decisions", "range_clusters")
             self._taps.setdefault(scan.node, []).append(
-                {name: output.taps[name] for name in keep if name in output.taps}
+                {name: output.taps[name] for name in STACKED if name in output.taps}
             )
             if shown:
                 self._shown[self._recording.nodes[scan.node].name] = output.taps
@@ -85,15 +90,16 @@ class RunTables:
             rows["frame"] = number
         self._detections += self._waiting
         self._waiting = []
-        points = np.zeros(len(frame.points), POINT_DTYPE)
-        points["frame"], points["time_us"] = number, frame.time_us
-        for column, name in enumerate(("x_m", "y_m", "members", "weight")):
-            points[name] = frame.points[:, column]
-        self._points.append(points)
+        self._points.append(_point_rows(number, frame.time_us, frame.points))
         self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
+        if "couples" in frame.taps:
+            self._couples.append(frame.taps["couples"])
         dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
-        _, tracks = self._kalman.process(np.ascontiguousarray(frame.points[:, :2]), dt_s)
-        self._baseline.append(_track_rows(number, frame.time_us, tracks))
+        compared = self._compared.process(frame, dt_s)
+        self._baseline.append(_track_rows(number, frame.time_us, compared.tracks))
+        for way, located in compared.points.items():
+            table = self._compared_points.setdefault(way, [])
+            table.append(_point_rows(number, frame.time_us, located))
 
     def result(self, site: Site, counters: dict[str, dict[str, int]], shown: int) -> RunResult:
         """Return everything that was collected; its metrics are still to be measured."""
@@ -105,12 +111,37 @@ class RunTables:
             points=_joined(self._points, POINT_DTYPE),
             tracks=_joined(self._tracks, TRACK_DTYPE),
             baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
+            compared_points={way: _joined(rows, POINT_DTYPE) for way, rows in self._compared_points.items()},
+            couples=self._couples,
             metrics={},
             baseline_metrics={},
             counters=counters,
-            stacks={self._recording.nodes[node].name: self._stack(node) for node in self._taps},
+            **self._stacks(),
             shown_frame=max(shown, 0),
             shown_taps=self._shown,
+        )
+
+    def _stacks(self) -> dict[str, Any]:
+        """Return `stacks` or `responses` of the result, as the nodes' taps are."""
+        names = {node: self._recording.nodes[node].name for node in self._taps}
+        if any("rotated" in tap for taps in self._taps.values() for tap in taps):
+            return {"responses": {name: self._responses(node) for node, name in names.items()}}
+        return {"stacks": {name: self._stack(node) for node, name in names.items()}}
+
+    def _responses(self, node: int) -> ResponseStack:
+        source = self._recording.nodes[node]
+        taps, n_samples = self._taps[node], source.scans.shape[1]
+        nothing, none = np.zeros(n_samples, np.float32), np.zeros((0, 2))
+        rate_hz = source.sample_rate_hz
+        to_delay = dict.fromkeys(TRACES, np.array([1.0 / rate_hz, 1.0])) | {"detections": np.ones(2)}
+        return ResponseStack(
+            images={name: np.array([tap.get(name, nothing) for tap in taps]) for name in IMAGES},
+            decisions=np.array([tap.get("decisions", nothing) for tap in taps]).astype(np.uint8),
+            delays={
+                name: [np.asarray(tap.get(name, none), np.float64).reshape(-1, 2) * scale for tap in taps]
+                for name, scale in to_delay.items()
+            },
+            delay_s=np.arange(n_samples) / rate_hz,
         )
 
     def _stack(self, node: int) -> NodeStack:
@@ -124,6 +155,14 @@ class RunTables:
             clusters=[tap.get("range_clusters", np.zeros((0, 4), np.float32)) for tap in taps],
             delay_s=source.first_sample_s + np.arange(n_samples) / source.sample_rate_hz,
         )
+
+
+def _point_rows(frame: int, time_us: int, points: NDArray[np.float32]) -> NDArray[np.void]:
+    rows = np.zeros(len(points), POINT_DTYPE)
+    rows["frame"], rows["time_us"] = frame, time_us
+    for column, name in enumerate(("x_m", "y_m", "members", "weight")):
+        rows[name] = points[:, column]
+    return rows
 
 
 def _track_rows(frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:

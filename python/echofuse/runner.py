@@ -3,29 +3,45 @@
 import json
 import math
 from argparse import Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.display import setting
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
-from echofuse.pipeline import process_recording
+from echofuse.pipeline import check_positions, process_recording
 from echofuse.recording import Recording, read, write
 from echofuse.result import RunResult
-from echofuse.site import Site, example_site, load_site, parse_site
+from echofuse.site import PIPELINES, Site, bare_site, example_site, load_site, parse_site
 
-#: What `run --seeds` prints of each seed.
-SEED_COLUMNS = (
-    "rmse_m",
-    "p80_m",
-    "one_track_fraction",
-    "count_right_fraction",
-    "false_track_fraction",
-    "bound_ratio",
-)
+#: What `run --seeds` prints of each seed, by pipeline.
+SEED_COLUMNS = {
+    "sensor_radar": (
+        "rmse_m",
+        "p80_m",
+        "one_track_fraction",
+        "count_right_fraction",
+        "false_track_fraction",
+        "bound_ratio",
+    ),
+    "through_wall_2d": (
+        "rmse_m",
+        "bound_ratio",
+        "worst_tracked_fraction",
+        "mean_tracked_fraction",
+        "crossing_tracked_fraction",
+        "false_tracks_per_100_s",
+        "confirmed_tracks",
+        "ghosts_per_response",
+        "paired_ghosts_per_response",
+        "all_pairs_ghosts_per_response",
+    ),
+}
+MOST_BEHIND_WALL = 4  # people whose walks the case study knows
 TRACK_STATES = ("unconfirmed", "confirmed", "silent")
 
 
@@ -33,8 +49,8 @@ def run(options: Namespace) -> int:
     """Simulate a case or a site, process it, and write its folder."""
     if options.seeds is not None:
         return _run_seeds(options)
-    site, name = _site_of_case(options.case, options.people)
-    recording = _simulated(site, options.case, options.people, options.seed)
+    site, name, people = _site_of_case(options.case, options.people)
+    recording = _simulated(site, options, people, options.seed)
     result = _processed(recording, site, options, options.seed)
     folder = options.out or Path("runs") / f"{name}-{options.seed}"
     return _finish(result, folder, report=not options.no_report)
@@ -111,7 +127,7 @@ def export_config(options: Namespace) -> int:
     recorded = read(options.recording).nodes if options.recording else ()
     sources = {source.node_id: source for source in recorded}
     configs = {
-        place.id: node_config(site, place, sources.get(place.id) or nominal_source(place))
+        place.id: node_config(site, place, sources.get(place.id) or nominal_source(site, place))
         for place in site.nodes
     }
     _make_folder(options.out.parent)
@@ -168,6 +184,7 @@ def _processed(
     if getattr(options, "faults", None) is not None:
         from echofuse.emulation.command import run_with_faults
 
+        check_positions(recording, site)
         return run_with_faults(recording, site, options.faults, seed=seed, target=options.target, taps=taps)
     from echofuse.emulation.deadline import Processor
 
@@ -185,58 +202,97 @@ def _replayed(recording: Recording, site: Site, target: str) -> RunResult:
     return replay(recording, site, recording.emulated, target=target)
 
 
-def _site_of_case(case: str, people: int) -> tuple[Site, str]:
-    """Return the case's site; where several people are expected, its settings for them (decision 0004)."""
+def _site_of_case(case: str, people: int | None) -> tuple[Site, str, int]:
+    """Return the case's site, its name, and how many people walk; several have their own (decision 0004)."""
     if case == "sensor-radar":
-        return example_site("sensor_radar" if people <= 1 else "sensor_radar_several"), case
-    path = Path(case)
-    if path.suffix != ".toml":
-        raise InputError(problem(case, "", "a case (sensor-radar) or a site file (SITE.toml)"))
-    return load_site(path), path.stem
+        n_people = 1 if people is None else people
+        return example_site("sensor_radar" if n_people <= 1 else "sensor_radar_several"), case, n_people
+    if case == "through-wall":
+        site, name = example_site("through_wall"), case
+    else:
+        path = Path(case)
+        if path.suffix != ".toml":
+            cases = "a case (sensor-radar, through-wall) or a site file (SITE.toml)"
+            raise InputError(problem(case, "", cases))
+        site, name = load_site(path), path.stem
+    if not PIPELINES[site.pipeline].behind_wall:
+        return site, name, 1 if people is None else people
+    if people is not None and people > MOST_BEHIND_WALL:
+        raise InputError(problem("--people", "", f"0 to {MOST_BEHIND_WALL} behind a wall", people))
+    return site, name, 2 if people is None else people
 
 
 def _site_of_recording(recording: Recording, options: Namespace) -> Site:
     chosen: Path | None = getattr(options, "site", None)
     if chosen is not None:
-        return load_site(chosen)
-    if not recording.site_toml.strip():
+        return load_site(chosen, few_nodes=True)
+    if recording.site_toml.strip():
+        return parse_site(recording.site_toml, f"{options.recording}: /site", few_nodes=True)
+    kind = PIPELINES.get(recording.pipeline)
+    if kind is None or len(recording.nodes) >= kind.least_nodes:
         raise InputError(problem(options.recording, "site", "a site file inside, or --site SITE.toml"))
-    return parse_site(recording.site_toml, f"{options.recording}: /site")
+    return bare_site(recording)
 
 
-def _simulated(site: Site, case: str, people: int, seed: int) -> Recording:
+def _simulated(site: Site, options: Namespace, people: int, seed: int) -> Recording:
+    simulated = _behind_wall if PIPELINES[site.pipeline].behind_wall else _around
+    recording = simulated(site, options, people, seed)
+    return replace(recording, pipeline=site.pipeline, site_toml=site.to_toml())
+
+
+def _around(site: Site, options: Namespace, people: int, seed: int) -> Recording:
     from echofuse.simulation.scene import sensor_radar_scene
-    from echofuse.simulation.sensor_radar import case_study_people, simulate
+    from echofuse.simulation.sensor_radar import CASE_STUDY_DURATION_S, case_study_people, simulate
     from echofuse.simulation.site_scene import site_people, site_scene
 
-    if case == "sensor-radar":
+    if options.case == "sensor-radar":
         scene, walkers = sensor_radar_scene(), case_study_people(people)
     else:
         scene = site_scene(site)
         walkers = site_people(scene, people)
-    recording = simulate(
-        scene, walkers, seed=seed, progress=lambda frames: progress(frames, "simulating", len(frames))
+    duration_s = CASE_STUDY_DURATION_S if options.duration is None else options.duration
+    return simulate(scene, walkers, seed=seed, duration_s=duration_s, progress=_simulating)
+
+
+def _behind_wall(site: Site, options: Namespace, people: int, seed: int) -> Recording:
+    from echofuse.simulation.through_wall import simulate_through_wall
+    from echofuse.simulation.through_wall_scene import (
+        CASE_STUDY_DURATION_S,
+        case_study_walkers,
+        through_wall_scene,
     )
-    return replace(recording, site_toml=site.to_toml())
+    from echofuse.simulation.through_wall_site import site_scene_behind_wall, site_walkers_behind_wall
+
+    if options.case == "through-wall":
+        scene, walkers = through_wall_scene(), case_study_walkers(people)
+    else:
+        scene = site_scene_behind_wall(site)
+        walkers = site_walkers_behind_wall(scene, people)
+    duration_s = CASE_STUDY_DURATION_S if options.duration is None else options.duration
+    return simulate_through_wall(scene, walkers, seed=seed, duration_s=duration_s, progress=_simulating)
+
+
+def _simulating(frames: range) -> Iterable[int]:
+    return progress(frames, "simulating", len(frames))
 
 
 def _run_seeds(options: Namespace) -> int:
     """Run many seeds, print one line each and their mean."""
-    site, _ = _site_of_case(options.case, options.people)
+    site, _, people = _site_of_case(options.case, options.people)
+    columns = SEED_COLUMNS[site.pipeline]
     rows: list[dict[str, float]] = []
     baselines: list[dict[str, float]] = []
     unaccounted = 0  # runs whose faults are not those in the counters
-    print("seed  " + "  ".join(f"{column:>20s}" for column in SEED_COLUMNS))
+    print("seed  " + "  ".join(f"{column:>20s}" for column in columns))
     for seed in progress(options.seeds, "seeds", len(options.seeds)):
-        recording = _simulated(site, options.case, options.people, seed)
+        recording = _simulated(site, options, people, seed)
         result = _processed(recording, site, options, seed, taps=False)
         unaccounted += result.emulation is not None and bool(result.emulation.account.problems)
         rows.append(result.metrics)
         baselines.append(result.baseline_metrics)
-        print(f"{seed:4d}  " + _cells(result.metrics))
+        print(f"{seed:4d}  " + _cells(result.metrics, columns))
     for label, table in (("mean", rows), ("KF  ", baselines)):
-        mean = {column: float(np.mean([row[column] for row in table])) for column in SEED_COLUMNS}
-        print(f"{label}  " + _cells(mean))
+        print(f"{label}  " + _cells({column: _mean(table, column) for column in columns}, columns))
     if options.out:
         _make_folder(options.out)
         _write_json(
@@ -248,8 +304,19 @@ def _run_seeds(options: Namespace) -> int:
     return 1 if unaccounted else 0
 
 
-def _cells(metrics: dict[str, float]) -> str:
-    return "  ".join(f"{metrics[column]:20.4f}" for column in SEED_COLUMNS)
+def _cells(metrics: dict[str, float], columns: Sequence[str]) -> str:
+    """Return a line of the table; '-' where nothing is known, such as errors with nobody there."""
+    known = [metrics.get(column, math.nan) for column in columns]
+    width = [max(20, len(column)) for column in columns]
+    return "  ".join(
+        f"{'-' if math.isnan(value) else f'{value:.4f}':>{wide}s}"
+        for value, wide in zip(known, width, strict=True)
+    )
+
+
+def _mean(table: Sequence[dict[str, float]], column: str) -> float:
+    """Return the mean over the seeds, NaN where a seed knows none."""
+    return float(np.mean([row.get(column, math.nan) for row in table]))
 
 
 def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
@@ -259,11 +326,17 @@ def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
     _write_json(folder / "metrics.json", result.metrics)
     _write_json(folder / "baseline_metrics.json", result.baseline_metrics)
     _write_json(folder / "counters.json", result.counters)
-    _write_tracks(folder / "tracks.csv", result)
     _write_observations(folder / "observations.csv", result)
+    if result.why_no_positions is None:
+        _write_tracks(folder / "tracks.csv", result)
+    else:
+        (folder / "tracks.csv").unlink(missing_ok=True)  # of an earlier run in this folder
+        print(f"no positions: {result.why_no_positions}")
+        print(f"{len(result.detections)} ranges in observations.csv")
+    beside_name = setting.baseline_name(result)
     for name, value in result.metrics.items():
         baseline = result.baseline_metrics.get(name)
-        beside = "" if baseline is None else f"   (Kalman baseline {baseline:.4g})"
+        beside = "" if baseline is None else f"   ({beside_name} {baseline:.4g})"
         print(f"{name:32s} {value:10.4g}{beside}")
     if report:
         from echofuse.display.report import write_report

@@ -227,3 +227,44 @@ def test_a_run_with_faults_tells_them_and_can_be_verified(
     faults.write_text("[link]\nlos = 0.1\n")
     assert "mine.toml: link.los: expected a known key (did you mean loss?)" in failing(capsys, *arguments)
     assert "lost" in failing(capsys, "run", "sensor-radar", "--faults", "no-such-scenario")
+
+
+def test_too_few_receivers_for_positions_still_give_their_ranges(
+    run_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lonely = tmp_path / "lonely.h5"
+    lonely.write_bytes((run_folder / "recording.h5").read_bytes())
+    with h5py.File(lonely, "r+") as file:
+        for number in range(2, 7):
+            del file[f"nodes/rx{number}"]
+        del file["outputs"]
+    assert main(["process", str(lonely), "--out", str(tmp_path / "run")]) == 0
+    said = capsys.readouterr().out
+    assert "no positions: a position takes 3 receivers that recording and site both know, here is rx1" in said
+    with (run_folder / "observations.csv").open() as file:
+        expected = [row for row in csv.DictReader(file) if row["node"] == "rx1"]
+    with (tmp_path / "run" / "observations.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["time_s", "node", "range_m", "weight"]
+    assert rows == expected
+    assert len(rows) > 30
+    metrics = json.loads((tmp_path / "run" / "metrics.json").read_text())
+    assert list(metrics) == ["path_error_std_m"]
+    assert not (tmp_path / "run" / "tracks.csv").exists()
+    assert "here is rx1" in (tmp_path / "run" / "report.html").read_text()
+    assert main(["verify", str(tmp_path / "run" / "recording.h5")]) == 0
+    assert "61 frames, all bytes the same" in capsys.readouterr().out
+    message = failing(capsys, "process", str(lonely), "--target", "process")
+    assert "node: expected enough nodes for a hub" in message
+
+
+def test_a_recording_of_one_receiver_needs_no_site(run_folder: Path, tmp_path: Path) -> None:
+    lonely = tmp_path / "lonely.h5"
+    lonely.write_bytes((run_folder / "recording.h5").read_bytes())
+    with h5py.File(lonely, "r+") as file:
+        for number in range(2, 7):
+            del file[f"nodes/rx{number}"]
+        del file["site"]
+    assert main(["process", str(lonely), "--no-report", "--out", str(tmp_path / "run")]) == 0
+    with (tmp_path / "run" / "observations.csv").open() as file:
+        assert len(list(csv.DictReader(file))) > 30

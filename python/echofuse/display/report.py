@@ -69,14 +69,17 @@ def _pictures(result: RunResult) -> list[_Picture]:
             caption=captions.room(result),
             draw=partial(room_figure, result),
         ),
-        _Picture(
-            file_name="error.png",
-            group="run",
-            heading="The error",
-            caption=captions.error(result),
-            draw=partial(error_figure, result),
-        ),
     ]
+    if result.why_no_positions is None:
+        whole_run.append(
+            _Picture(
+                file_name="error.png",
+                group="run",
+                heading="The error",
+                caption=captions.error(result),
+                draw=partial(error_figure, result),
+            )
+        )
     numbered = list(enumerate((node.name for node in result.recording.nodes), start=1))
     numbered.sort(key=lambda pair: -_heaviest_cluster(result, pair[1]))  # the clearest example comes first
     return whole_run + [

@@ -101,7 +101,23 @@ def truth_path_m(site: Site) -> NDArray[np.float64] | None:
     return None if site.truth is None else np.asarray(site.truth.path_m, dtype=np.float64).reshape(-1, 2)
 
 
+def behind_wall(result: RunResult) -> bool:
+    """Whether the run's people are behind a wall."""
+    from echofuse.site import PIPELINES
+
+    kind = PIPELINES.get(result.site.pipeline)
+    return kind is not None and kind.behind_wall
+
+
 def tracker_name(result: RunResult) -> str:
     """Return what the site's tracker is called in tables and legends."""
+    settings = result.site.settings
+    if behind_wall(result):
+        return "Path tracker" if settings.get("track_aided", True) else "Kalman filter"
     names = {"phd": "PHD filter", "kalman": "Kalman filter", "range": "Path tracker"}
-    return names.get(str(result.site.settings.get("tracker", "phd")), "Tracker")
+    return names.get(str(settings.get("tracker", "phd")), "Tracker")
+
+
+def baseline_name(result: RunResult) -> str:
+    """Return what the simpler way beside it is called."""
+    return "Pairing, then Kalman" if behind_wall(result) else "Kalman baseline"

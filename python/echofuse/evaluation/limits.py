@@ -11,6 +11,7 @@ from echofuse.constants import SPEED_OF_LIGHT_MPS
 __all__ = [
     "SPEED_OF_LIGHT_MPS",
     "bistatic_path_bound_m",
+    "covariance_bound_m2",
     "delay_bound_s",
     "effective_bandwidth_rad_s",
     "monostatic_range_bound_m",
@@ -68,9 +69,14 @@ def position_covariance_bound_m2(
     tx, rx = np.asarray(tx_m, np.float64), np.asarray(rx_m, np.float64)
     sigma = np.broadcast_to(np.asarray(path_sigma_m, np.float64), tx.shape[:-1])
     gradient = (_unit(position - tx) + _unit(position - rx)) / sigma[:, np.newaxis]
+    return covariance_bound_m2(gradient)
+
+
+def covariance_bound_m2(gradient: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the least covariance (..., d, d) [m^2], from each path's gradient over its sigma (..., n, d)."""
     information = np.einsum("...ni,...nj->...ij", gradient, gradient)
     determined = np.linalg.cond(information) < 1e12
-    dimension = tx.shape[-1]
+    dimension = gradient.shape[-1]
     solvable = np.where(determined[..., np.newaxis, np.newaxis], information, np.eye(dimension))
     covariance = np.linalg.inv(solvable)
     return np.where(determined[..., np.newaxis, np.newaxis], covariance, np.inf)

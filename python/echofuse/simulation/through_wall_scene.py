@@ -142,6 +142,7 @@ CASE_STUDY_WALKS = (
     Walk(waypoints_m=((1.9, 4.9), (1.9, 1.4)), speed_mps=0.9),
 )
 CASE_STUDY_HEIGHTS_M = (1.82, 1.76, 1.68, 1.90)
+CASE_STUDY_DURATION_S = 60.0
 BODY_RADIUS_M = 0.2  # torso of 32 cm by 48 cm, a stride of 70 cm: the paper's 30 cm by 70 cm
 
 

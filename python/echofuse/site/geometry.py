@@ -5,10 +5,11 @@ from itertools import combinations
 
 import numpy as np
 
-from echofuse.site.model import Point2, SiteNode
+from echofuse.constants import SPEED_OF_LIGHT_MPS
+from echofuse.site.model import Point2, SiteNode, Wall
 from echofuse.site.tables import Problems
 
-__all__ = ["check_area", "check_nodes"]
+__all__ = ["check_area", "check_around", "check_before_wall", "check_nodes"]
 
 SAME_PLACE_M = 1e-3
 ON_A_LINE_M = 1e-2  # greatest distance of a node from the line through all of them
@@ -23,12 +24,8 @@ def check_area(area: tuple[Point2, ...], problems: Problems) -> None:
         problems.add("site.area", "a polygon with an area above 0 m^2")
 
 
-def check_nodes(
-    nodes: tuple[SiteNode, ...], area: tuple[Point2, ...], least: int, problems: Problems
-) -> None:
-    """Report nodes that are too few, doubled, in one place, on one line, or far from the area."""
-    if len(nodes) < least:
-        problems.add("node", f"at least {least} nodes, the fewest that locate a person", f"{len(nodes)}")
+def check_nodes(nodes: tuple[SiteNode, ...], area: tuple[Point2, ...], problems: Problems) -> None:
+    """Report nodes that are doubled, in one place, or far from the area."""
     for (i, one), (j, other) in combinations(enumerate(nodes, start=1), 2):
         if one.id == other.id:
             problems.add(f"node[{j}].id", f"an id of its own (node[{i}] has it too)", other.id)
@@ -40,14 +37,59 @@ def check_nodes(
                 f"a place of its own: {one.name} has the same Tx and Rx",
                 other.name,
             )
-    if len(nodes) >= least and _spread_m(nodes) < ON_A_LINE_M:
-        problems.add(
-            "node", "nodes that do not all stand on one line", "a line: both sides of it look the same"
-        )
     for i, node in enumerate(nodes, start=1):
         for key, position in (("tx_position_m", node.tx_position_m), ("rx_position_m", node.rx_position_m)):
             if _is_far(position[:2], area):
                 problems.add(f"node[{i}].{key}", "a position near the area, in metres", list(position))
+
+
+def check_around(nodes: tuple[SiteNode, ...], problems: Problems) -> None:
+    """Report nodes around an area that all stand on one line."""
+    if _spread_m(nodes) < ON_A_LINE_M:
+        problems.add(
+            "node", "nodes that do not all stand on one line", "a line: both sides of it look the same"
+        )
+
+
+def check_before_wall(
+    nodes: tuple[SiteNode, ...],
+    area: tuple[Point2, ...],
+    wall: Wall | None,
+    blind_zone_s: float,
+    problems: Problems,
+) -> None:
+    """Report what is not one transmitter with receivers on a line along x, before a wall, before the area.
+
+    blind_zone_s: after the cross-talk; echoes that begin within are not reported.
+    """
+    _, tx_y, tx_z = tx_m = nodes[0].tx_position_m
+    for i, node in enumerate(nodes, start=1):
+        rx_x, rx_y, rx_z = node.rx_position_m
+        if math.dist(node.tx_position_m, tx_m) > SAME_PLACE_M:
+            expected = f"{list(tx_m)}, the transmitter of node[1]: all receivers listen to one"
+            problems.add(f"node[{i}].tx_position_m", expected, list(node.tx_position_m))
+        elif max(abs(rx_y - tx_y), abs(rx_z - tx_z)) > ON_A_LINE_M or abs(rx_x - tx_m[0]) < ON_A_LINE_M:
+            expected = f"a place beside the transmitter, along x: y = {tx_y:g}, z = {tx_z:g}"
+            problems.add(f"node[{i}].rx_position_m", expected, list(node.rx_position_m))
+    if wall is None:
+        problems.add("site.wall", "a table with thickness_m and relative_permittivity", "nothing")
+        return
+    nearest_y = min(y for _, y in area)
+    if nearest_y <= tx_y + wall.thickness_m:
+        expected = f"an area behind the wall: y above {tx_y + wall.thickness_m:g}, antennas and thickness"
+        problems.add("site.area", expected, f"y = {nearest_y:g}")
+    depth_m = min(_nearest_depth_m(node, wall, blind_zone_s) for node in nodes)
+    if depth_m <= wall.thickness_m:
+        expected = f"a wall before the nearest range: blind_zone_s = {blind_zone_s:g} ends at {depth_m:.2f} m"
+        problems.add("site.wall.thickness_m", expected, wall.thickness_m)
+
+
+def _nearest_depth_m(node: SiteNode, wall: Wall, blind_zone_s: float) -> float:
+    """Return how deep the nearest echo that a node reports lies, straight between its antennas."""
+    baseline_m = math.dist(node.tx_position_m, node.rx_position_m)
+    excess_m = wall.thickness_m * (math.sqrt(wall.relative_permittivity) - 1.0)
+    path_m = baseline_m + SPEED_OF_LIGHT_MPS * blind_zone_s - 2.0 * excess_m
+    return math.sqrt(max(path_m, baseline_m) ** 2 - baseline_m**2) / 2.0
 
 
 def _apart(one: SiteNode, other: SiteNode) -> float:

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from echofuse.errors import InputError, problem
-from echofuse.site.geometry import check_area, check_nodes
+from echofuse.site.geometry import check_area, check_around, check_before_wall, check_nodes
 from echofuse.site.model import Point2, Point3, Site, SiteNode, TruePath, Wall, rectangle
-from echofuse.site.stages import PIPELINES, Config, check_settings
+from echofuse.site.stages import PIPELINES, Config, PipelineKind, check_settings
 from echofuse.site.tables import Problems, Table, suggestion
 
 __all__ = ["example_site", "example_sites", "load_site", "parse_site"]
@@ -18,8 +18,8 @@ MAX_NODE_ID = 65534  # Cyphal/serial has 16 bits; 65535 is nobody or everybody
 MAX_NODES = 16  # one hub serves one site of up to 16 nodes
 
 
-def load_site(path: str | Path) -> Site:
-    """Read and check a site file.
+def load_site(path: str | Path, *, few_nodes: bool = False) -> Site:
+    """Read and check a site file; `few_nodes` lets one pass that has too few of them for positions.
 
     Raises
     ------
@@ -31,20 +31,27 @@ def load_site(path: str | Path) -> Site:
         text = path.read_text("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(problem(path, "", "a site file (TOML)", str(error))) from error
-    return parse_site(text, str(path))
+    return parse_site(text, str(path), few_nodes=few_nodes)
 
 
-def parse_site(text: str, source: str = "site", configs: tuple[Config, Config] | None = None) -> Site:
+def parse_site(
+    text: str,
+    source: str = "site",
+    configs: tuple[Config, Config] | None = None,
+    *,
+    few_nodes: bool = False,
+) -> Site:
     """Check the text of a site file; `source` is what its problems name.
 
     `configs` are the node's and the hub's default configuration (default: those of the compiled library).
+    `few_nodes` lets a site pass that has too few nodes for positions; then it need not have a wall either.
     """
     try:
         tree = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(problem(source, "", "TOML", str(error))) from error
     problems = Problems(source)
-    root = _Root(tree, problems)
+    root = _Root(tree, problems, few_nodes=few_nodes)
     site = root.site(configs)
     if problems.lines or site is None:
         raise InputError(problems.lines)
@@ -65,9 +72,11 @@ def example_site(name: str) -> Site:
 class _Root:
     """The whole file."""
 
-    def __init__(self, tree: Mapping[str, Any], problems: Problems) -> None:
+    def __init__(self, tree: Mapping[str, Any], problems: Problems, *, few_nodes: bool) -> None:
         self.tree = dict(tree)
         self.problems = problems
+        self.few_nodes = few_nodes
+        self.blind_zone_s = 0.0
 
     def site(self, configs: tuple[Config, Config] | None) -> Site | None:
         tables = ("site", "node", "pipeline", "truth")
@@ -85,12 +94,29 @@ class _Root:
         if area is not None:
             check_area(area, self.problems)
         if area is not None and nodes is not None and pipeline is not None:
-            check_nodes(nodes, area, PIPELINES[pipeline].least_nodes, self.problems)
+            check_nodes(nodes, area, self.problems)
+            self.check_positions(PIPELINES[pipeline], nodes, area, wall)
         if name is None or area is None or nodes is None or pipeline is None:
             return None
         return Site(
             name=name, nodes=nodes, area=area, pipeline=pipeline, settings=settings, wall=wall, truth=truth
         )
+
+    def check_positions(
+        self, kind: PipelineKind, nodes: tuple[SiteNode, ...], area: tuple[Point2, ...], wall: Wall | None
+    ) -> None:
+        """Check that a pipeline can locate people with these nodes."""
+        least, most = kind.least_nodes, kind.most_nodes
+        if len(nodes) < least:
+            if not self.few_nodes or not nodes:
+                expected = f"at least {least} nodes, the fewest that locate a person"
+                self.problems.add("node", expected, f"{len(nodes)}")
+        elif kind.behind_wall:
+            if len(nodes) > most:
+                self.problems.add("node", f"at most {most} nodes on the line", f"{len(nodes)}")
+            check_before_wall(nodes, area, wall, self.blind_zone_s, self.problems)
+        else:
+            check_around(nodes, self.problems)
 
     def table(self, key: str) -> Table:
         if key not in self.tree:
@@ -121,6 +147,7 @@ class _Root:
             return None, settings
         checked = configs or PIPELINES[name].default_configs()
         check_settings(settings, checked, self.problems)
+        self.blind_zone_s = getattr(checked[0], "blind_zone_s", 0.0)
         self.check_node_settings(checked[0])
         return name, settings
 

@@ -2,7 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from echofuse.recording import Recording
+
+BARE_MARGIN_M = 3.0  # around the nodes of a recording that comes without a site
 
 Point2 = tuple[float, float]
 Point3 = tuple[float, float, float]
@@ -74,6 +79,27 @@ class Site:
         from echofuse.site.toml_writer import site_to_toml
 
         return site_to_toml(self)
+
+
+def bare_site(recording: "Recording") -> Site:
+    """Return a recording's nodes as a site with nothing set: enough where there are no positions."""
+    nodes = tuple(
+        SiteNode(
+            name=node.name,
+            id=node.node_id,
+            tx_position_m=_point(node.tx_position_m),
+            rx_position_m=_point(node.rx_position_m),
+        )
+        for node in recording.nodes
+    )
+    xs, ys, _ = zip(*(end for node in nodes for end in (node.tx_position_m, node.rx_position_m)), strict=True)
+    area = rectangle(min(xs) - BARE_MARGIN_M, min(ys), max(xs) + BARE_MARGIN_M, max(ys) + 2.0 * BARE_MARGIN_M)
+    return Site(name="nodes of the recording", nodes=nodes, area=area, pipeline=recording.pipeline)
+
+
+def _point(position_m: Any) -> Point3:
+    x, y, z = (float(value) for value in position_m)
+    return x, y, z
 
 
 def rectangle(x_min: float, y_min: float, x_max: float, y_max: float) -> tuple[Point2, ...]:

@@ -13,9 +13,10 @@ from echofuse.site.tables import Problems, finite_number, suggestion
 
 __all__ = ["PIPELINES", "Config", "PipelineKind", "PlanConfig", "apply_settings", "check_settings"]
 
-#: What the recording or the nodes of the site say; a stage setting may not contradict them.
+#: What the recording, or nodes, area and wall of the site say; a stage setting may not contradict them.
 MEASURED = frozenset(
     {"node_id", "n_samples", "sample_rate_hz", "first_sample_s", "baseline_m", "nodes", "n_nodes", "area"}
+    | {"thickness_m", "relative_permittivity"}
 )
 
 
@@ -32,9 +33,7 @@ class Config(Protocol):
 
 
 def _link_budget() -> Any:
-    from echofuse import _core
-
-    return _core.CoverageConfig()
+    return _compiled("CoverageConfig")
 
 
 @dataclass
@@ -52,22 +51,46 @@ class PlanConfig:
         return None if self.coverage.invalid_field() is None else "coverage"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PipelineKind:
-    """Which compiled classes configure a pipeline, and how many nodes it needs."""
+    """The compiled classes of a pipeline, and the sites on which it can say where people are."""
 
-    node_config: str
-    hub_config: str
-    least_nodes: int
+    node: str  # a node's class; its configuration's name ends in Config
+    hub: str
+    least_nodes: int  # fewer see people, and cannot tell where they are
+    most_nodes: int
+    behind_wall: bool = False  # receivers on a line before a wall, else around the area
+
+    def new_node(self) -> Any:
+        """Return a node that is not configured."""
+        return _compiled(self.node)
+
+    def new_hub(self) -> Any:
+        """Return a hub that is not configured."""
+        return _compiled(self.hub)
+
+    def node_config(self) -> Any:
+        """Return a node's configuration, as C++ defaults it."""
+        return _compiled(f"{self.node}Config")
+
+    def hub_config(self) -> Any:
+        """Return the hub's configuration, as C++ defaults it."""
+        return _compiled(f"{self.hub}Config")
 
     def default_configs(self) -> tuple[Config, ...]:
         """Return the configurations of a node, of the hub and of a plan, as C++ defaults them."""
-        from echofuse import _core
-
-        return getattr(_core, self.node_config)(), getattr(_core, self.hub_config)(), PlanConfig()
+        return self.node_config(), self.hub_config(), PlanConfig()
 
 
-PIPELINES = {"sensor_radar": PipelineKind("SensorRadarNodeConfig", "SensorRadarHubConfig", least_nodes=3)}
+def _compiled(name: str) -> Any:
+    from echofuse import _core
+
+    return getattr(_core, name)()
+
+
+PIPELINES = {
+    "sensor_radar": PipelineKind(node="SensorRadarNode", hub="SensorRadarHub", least_nodes=3, most_nodes=16)
+}
 
 
 def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], problems: Problems) -> None:
@@ -110,7 +133,7 @@ def _set_all(config: Config, values: Mapping[str, Any], where: str, problems: Pr
 
 def _set(config: Config, key: str, value: Any, where: str, problems: Problems) -> None:
     if key in MEASURED:
-        problems.add(where, "no such setting: the recording and the nodes of the site say it", value)
+        problems.add(where, "no such setting: the recording or the site itself says it", value)
         return
     current = getattr(config, key)
     if _is_config(current):
