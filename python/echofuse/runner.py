@@ -11,6 +11,7 @@ import numpy as np
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display import setting
+from echofuse.display.health import health_lines
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
 from echofuse.pipeline import check_positions, process_recording
@@ -338,6 +339,8 @@ def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
         baseline = result.baseline_metrics.get(name)
         beside = "" if baseline is None else f"   ({beside_name} {baseline:.4g})"
         print(f"{name:32s} {value:10.4g}{beside}")
+    for line in health_lines(result):
+        print(line)
     if report:
         from echofuse.display.report import write_report
 

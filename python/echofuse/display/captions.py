@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from echofuse.result import RunResult
 
 
+DIAMOND = "The diamond is the paper's best setting: left of it and above is better. "
+MARKED_DIAMOND = " The diamond is the paper's error, in two dimensions, in its own room."
+
+
 def room(result: RunResult) -> str:
     """Return the caption of the room from above."""
     if setting.people(result):
@@ -20,6 +24,16 @@ def room(result: RunResult) -> str:
         truth = "The broad grey band is the path marked on the floor; the times are not known. "
     else:
         truth = ""
+    if result.why_no_positions is not None:
+        return f"The site from above. {truth}There are no positions: {result.why_no_positions}."
+    if setting.behind_wall(result):
+        return (
+            f"The room behind the wall from above (the paper's Fig. 7). {truth}How far before the wall the "
+            "antennas stand makes no difference. Small dots are the couples of traces that were located and "
+            "that no track took. Each track has its colour: solid while confirmed, dashed while silent. The "
+            "thin orange line is the paper's way: traces paired, located, then a Kalman filter with nearest "
+            "neighbour."
+        )
     return (
         f"The site from above (the paper's Fig. 7). {truth}Small dots are the points that the hub located "
         "and gave to the tracker. Each track has its colour: solid while confirmed, dashed while silent, "
@@ -31,11 +45,13 @@ def room(result: RunResult) -> str:
 def error(result: RunResult) -> str:
     """Return the caption of the errors."""
     number = "how many people were told of"
+    behind_wall = setting.behind_wall(result)
     if setting.people(result):
+        after = "two seconds" if behind_wall else "second (the paper's Fig. 8)"
+        diamond = "" if behind_wall else DIAMOND
         return (
-            "(a) Empirical distribution of the localisation error after the first second (the paper's "
-            "Fig. 8). A person without a track counts as infinitely wrong, so a curve ends at the share "
-            "that was tracked. The diamond is the paper's best setting: left of it and above is better. "
+            f"(a) Empirical distribution of the localisation error after the first {after}. A person without "
+            f"a track counts as infinitely wrong, so a curve ends at the share that was tracked. {diamond}"
             "(b) The error of each person's track over time; a gap is a frame without one. (c) How many "
             f"people there were, and {number}."
         )
@@ -43,10 +59,23 @@ def error(result: RunResult) -> str:
         return (
             "The recording tells where the person walked but not when: the error is the distance of "
             "confirmed tracks across that path. (a) Its distribution while the person walked, (b) over "
-            f"time, a line a track, shaded where the person did not walk, (c) {number}. The diamond is the "
-            "paper's error, in two dimensions, in its own room."
+            f"time, a line a track, shaded where the person did not walk, (c) {number}."
+            + ("" if behind_wall else MARKED_DIAMOND)
         )
     return f"No truth was recorded, so there is no error to draw: only {number} over time."
+
+
+def responses(result: RunResult, name: str) -> str:
+    """Return the caption of a through-wall receiver's responses."""
+    heard = "" if result.why_no_positions is None else " (there is no second receiver to pair them with)"
+    return (
+        f"{name}, all responses of the run, time upwards (the paper's Figs. 5 and 6). (a) As received, all "
+        "of the sequence: the brightest line is the cross-talk; (b) turned until that is in its place, as "
+        "far as the area reaches; (c) what moves; (d) each sample over the largest from it to the end, so "
+        "that far people are as bright as near ones; (e) hits of the detector; (f) what may be a person, "
+        "and where each one's echo begins; (g) what is reported, and which of it belongs to a couple of "
+        f"traces{heard}, each track in its colour; (h) where the echoes truly were."
+    )
 
 
 def scan(result: RunResult, name: str) -> str:

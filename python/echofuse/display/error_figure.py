@@ -27,9 +27,9 @@ PAPER_FRACTION = 0.80
 SHORTEST_AXIS_M = 0.5  # so that the paper's point is always inside
 
 
-def error_figure(result: RunResult, *, baseline: str = "Kalman baseline") -> Figure:
+def error_figure(result: RunResult) -> Figure:
     """Draw the error's cdf, the error over time and the number of people, of tracker and baseline."""
-    tracker = setting.tracker_name(result)
+    tracker, baseline = setting.tracker_name(result), setting.baseline_name(result)
     series = (
         (tracker, style.TRACKER, 1.6, localisation_errors(result, result.tracks)),
         (baseline, style.BASELINE, 1.0, localisation_errors(result, result.baseline_tracks)),
@@ -40,7 +40,10 @@ def error_figure(result: RunResult, *, baseline: str = "Kalman baseline") -> Fig
         figure = style.new_figure(4.6 if known else 2.8)
         if known:
             grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.35), height_ratios=(1.25, 1.0))
-            _draw_cdf(figure.add_subplot(grid[:, 0]), series, marked=not setting.people(result))
+            cdf = figure.add_subplot(grid[:, 0])
+            _draw_cdf(cdf, series, marked=not setting.people(result))
+            if not setting.behind_wall(result):
+                _mark_paper(cdf, marked=not setting.people(result))
             over_time = figure.add_subplot(grid[0, 1])
             _draw_over_time(over_time, time_s, series, walking_frames(result))
             number = figure.add_subplot(grid[1, 1], sharex=over_time)
@@ -69,6 +72,14 @@ def _draw_cdf(axes: Axes, series: Series, *, marked: bool) -> None:
             np.r_[0.0, ascending], np.r_[0.0, fraction], where="post", color=colour, linewidth=width, zorder=3
         )
         widest_m = max(widest_m, float(np.percentile(ascending, 99.0)))
+    axes.set_xlim(0.0, 1.05 * widest_m)
+    axes.set_ylim(0.0, 1.02)
+    axes.set_yticks(np.linspace(0.0, 1.0, 6), [f"{percent} %" for percent in range(0, 101, 20)])
+    axes.set_xlabel("distance across the marked path [m]" if marked else "localisation error [m]")
+    axes.set_ylabel("share of confirmed positions" if marked else "share of all frames")
+
+
+def _mark_paper(axes: Axes, *, marked: bool) -> None:
     axes.plot(
         [0.0, PAPER_ERROR_M, PAPER_ERROR_M],
         [PAPER_FRACTION, PAPER_FRACTION, 0.0],
@@ -88,11 +99,6 @@ def _draw_cdf(axes: Axes, series: Series, *, marked: bool) -> None:
         fontsize=8.0,
         zorder=5,
     )
-    axes.set_xlim(0.0, 1.05 * widest_m)
-    axes.set_ylim(0.0, 1.02)
-    axes.set_yticks(np.linspace(0.0, 1.0, 6), [f"{percent} %" for percent in range(0, 101, 20)])
-    axes.set_xlabel("distance across the marked path [m]" if marked else "localisation error [m]")
-    axes.set_ylabel("share of confirmed positions" if marked else "share of all frames")
 
 
 def _draw_over_time(

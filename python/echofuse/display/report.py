@@ -97,10 +97,21 @@ def _heaviest_cluster(result: RunResult, name: str) -> float:
 
 def _pictures_of_node(result: RunResult, number: int, name: str) -> list[_Picture]:
     from echofuse.display import captions
+    from echofuse.display.response_figure import response_figure
     from echofuse.display.scan_figure import scan_figure
     from echofuse.display.stack_figure import stack_figure
 
     suffix = f"{number:02d}-{_file_part(name)}.png"
+    if name in result.responses:
+        return [
+            _Picture(
+                file_name=f"responses-{suffix}",
+                group="responses",
+                heading=name,
+                caption=captions.responses(result, name),
+                draw=partial(response_figure, result, name),
+            )
+        ]
     pictures = []
     if name in result.shown_taps:
         pictures.append(

@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from echofuse.display import setting
+from echofuse.display.health import health_lines
 from echofuse.display.report_style import STYLE_SHEET
 
 if TYPE_CHECKING:
     from echofuse.result import RunResult
 
-NODE_GROUPS = {"scan": "One scan through the stages of a node", "stack": "All scans of a node"}
+NODE_GROUPS = {
+    "scan": "One scan through the stages of a node",
+    "stack": "All scans of a node",
+    "responses": "All responses of a receiver, stage by stage",
+}
 
 #: Order, wording and the paper's figures of the metrics; others are printed after these, by their names.
 METRICS: dict[str, tuple[str, str]] = {
@@ -71,7 +76,7 @@ WORK_DONE = frozenset(
 class Image:
     """A picture ready for the page."""
 
-    group: str  # "run", "scan" or "stack"
+    group: str  # "run", or a key of NODE_GROUPS
     heading: str
     caption: str
     png_base64: str
@@ -98,7 +103,8 @@ def page(result: RunResult, images: Sequence[Image]) -> str:
 
 def _head(result: RunResult) -> str:
     nodes = result.recording.nodes
-    monostatic = sum(setting.is_monostatic(node) for node in nodes)
+    within_m = setting.monostatic_within_m(result)
+    monostatic = sum(setting.is_monostatic(node, within_m) for node in nodes)
     counts = ((len(nodes) - monostatic, "bistatic"), (monostatic, "monostatic"))
     kinds = ", ".join(f"{count} {kind}" for count, kind in counts if count) or "none"
     time_s = setting.elapsed_s(result, result.frame_time_us)
@@ -212,6 +218,9 @@ def _counters(result: RunResult) -> str:
         "<p class='note'>Counters of work done are plain; what was rejected, lost or cut is marked when it "
         "is not zero.</p>"
     ]
+    said = "".join(f"<li>{escape(line)}</li>" for line in health_lines(result))
+    if said:
+        parts.append(f"<ul>{said}</ul>")
     if nodes:
         names = list(dict.fromkeys(counter for counts in nodes.values() for counter in counts))
         rows = [

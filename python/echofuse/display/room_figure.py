@@ -54,6 +54,7 @@ def draw_site(axes: Axes, result: RunResult) -> None:
         label="watched area",
         zorder=0,
     )
+    _draw_wall(axes, result, area)
     draw_nodes(
         axes,
         names=[node.name for node in result.recording.nodes],
@@ -63,14 +64,40 @@ def draw_site(axes: Axes, result: RunResult) -> None:
         rx_m=np.array([node.rx_position_m[:2] for node in result.recording.nodes], dtype=np.float64).reshape(
             -1, 2
         ),
+        monostatic_within_m=setting.monostatic_within_m(result),
     )
 
 
-def draw_nodes(axes: Axes, *, names: list[str], tx_m: NDArray[np.float64], rx_m: NDArray[np.float64]) -> None:
+def _draw_wall(axes: Axes, result: RunResult, area: NDArray[np.float64]) -> None:
+    """Draw the wall as a band that ends where the area begins; where it stands, the site does not say."""
+    wall = result.site.wall
+    if wall is None or not setting.behind_wall(result):
+        return
+    (x_min, y_min), (x_max, _) = area.min(axis=0), area.max(axis=0)
+    axes.fill(
+        [x_min, x_max, x_max, x_min],
+        [y_min - wall.thickness_m, y_min - wall.thickness_m, y_min, y_min],
+        facecolor="#e4d5c9",
+        edgecolor="#a58c7a",
+        hatch="///",
+        linewidth=0.7,
+        label=f"wall, {100.0 * wall.thickness_m:.0f} cm",
+        zorder=0.5,
+    )
+
+
+def draw_nodes(
+    axes: Axes,
+    *,
+    names: list[str],
+    tx_m: NDArray[np.float64],
+    rx_m: NDArray[np.float64],
+    monostatic_within_m: float = setting.MONOSTATIC_WITHIN_M,
+) -> None:
     """Draw receivers (n, 2) with their names, and transmitters (n, 2), each place once."""
     if not names:
         return
-    own = np.linalg.norm(tx_m - rx_m, axis=1) < setting.MONOSTATIC_WITHIN_M
+    own = np.linalg.norm(tx_m - rx_m, axis=1) < monostatic_within_m
     middle = np.concatenate([tx_m, rx_m]).mean(axis=0)
     symbol: dict[str, Any] = {"linestyle": "none", "markersize": 7, "color": style.INK, "zorder": 5}
     kinds = ((own, style.MONOSTATIC_MARKER, "node (Tx and Rx)"), (~own, style.RECEIVER_MARKER, "Rx"))
@@ -160,7 +187,9 @@ def _draw_points(axes: Axes, result: RunResult) -> None:
             color=style.POINT,
             alpha=0.6,
             linewidths=0,
-            label="points given to the tracker",
+            label="points that no track took"
+            if setting.behind_wall(result)
+            else "points given to the tracker",
             zorder=1.5,
             rasterized=True,
         )
@@ -194,7 +223,7 @@ def _draw_baseline(axes: Axes, result: RunResult) -> None:
             linewidth=0.8,
             linestyle=style.TRACK_STATE_LINE[stretch.state],
             zorder=2.5,
-            label="Kalman baseline" if stretch.state == 1 else None,
+            label=setting.baseline_name(result) if stretch.state == 1 else None,
         )
 
 

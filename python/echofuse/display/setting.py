@@ -76,10 +76,15 @@ def echo_delay_s(node: NodeRecording, position_m: NDArray[np.float64]) -> NDArra
     return np.asarray(path_m / SPEED_OF_LIGHT_MPS)
 
 
-def is_monostatic(node: NodeRecording) -> bool:
-    """Whether a node hears its own transmitter."""
+def monostatic_within_m(result: RunResult) -> float:
+    """Return how near to each other Tx and Rx of one module are; of a handheld before a wall none are one."""
+    return 0.0 if behind_wall(result) else MONOSTATIC_WITHIN_M
+
+
+def is_monostatic(node: NodeRecording, within_m: float) -> bool:
+    """Whether a node hears its own transmitter, not farther than `within_m`."""
     apart_m = np.linalg.norm(np.asarray(node.tx_position_m)[:2] - np.asarray(node.rx_position_m)[:2])
-    return bool(apart_m < MONOSTATIC_WITHIN_M)
+    return bool(apart_m < within_m)
 
 
 def sample_delay_s(result: RunResult, name: str, n_samples: int) -> NDArray[np.float64]:

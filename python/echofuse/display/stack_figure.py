@@ -11,6 +11,7 @@ from echofuse.display import setting, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
     from echofuse.recording import NodeRecording
@@ -20,6 +21,8 @@ MAX_ROWS = 600  # of an image: what the screen resolves
 MAX_COLUMNS = 700
 FLOOR_PERCENTILE = 50.0  # of the positive residuals: the darkest colour
 CEILING_PERCENTILE = 99.8
+
+Extent = tuple[float, float, float, float]  # of an image: delay from and to [ns], time from and to [s]
 
 
 def stack_figure(result: RunResult, name: str) -> Figure:
@@ -40,8 +43,10 @@ def stack_figure(result: RunResult, name: str) -> Figure:
     with style.look():
         figure, panels = style.new_panels(2, 2, 6.4, legend=False, right_in=0.85, share_y=True)
         _draw_truth(panels[0, 0], frames_s, truth)
-        _draw_residual(figure, panels[0, 1], stack, extent)
-        _draw_decisions(panels[1, 0], stack, extent)
+        panels[0, 1].set_title("(b) After clutter removal")
+        draw_decibel(figure, panels[0, 1], stack.residual, extent, "residual ")
+        panels[1, 0].set_title("(c) Decisions")
+        draw_hits(panels[1, 0], stack.decisions, extent)
         _draw_clusters(panels[1, 1], stack, time_s, delay_ns, frames_s, truth)
         for axes in panels.flat:
             axes.set_xlim(extent[0], extent[1])
@@ -109,13 +114,11 @@ def _draw_truth(
         axes.legend(loc="upper right", title="person", title_fontsize=8.0, frameon=True, edgecolor="none")
 
 
-def _draw_residual(
-    figure: Figure, axes: Axes, stack: NodeStack, extent: tuple[float, float, float, float]
-) -> None:
+def draw_decibel(figure: Figure, axes: Axes, image: NDArray[Any], extent: Extent, what: str = "") -> None:
+    """Draw amplitudes (n_rows, n_columns) [count] in decibels, from the median of those above 0 up."""
     from matplotlib.colors import Normalize
 
-    axes.set_title("(b) After clutter removal")
-    image = shrink_by_maximum(stack.residual, max_rows=MAX_ROWS, max_columns=MAX_COLUMNS)
+    image = shrink_by_maximum(image, max_rows=MAX_ROWS, max_columns=MAX_COLUMNS)
     positive = image[image > 0.0]
     low, high = (
         np.percentile(positive, [FLOOR_PERCENTILE, CEILING_PERCENTILE])
@@ -124,26 +127,23 @@ def _draw_residual(
     )
     high = max(float(high), 1.001 * float(low))
     decibel = 20.0 * np.log10(np.maximum(image, low) / high)
-    drawn = axes.imshow(
-        decibel,
-        origin="lower",
-        aspect="auto",
-        extent=extent,
-        cmap=style.AMPLITUDE_MAP,
-        interpolation="nearest",
-        norm=Normalize(float(20.0 * np.log10(low / high)), 0.0),
-    )
-    axes.grid(False)
-    bar = figure.colorbar(drawn, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)))
-    bar.set_label(f"residual [dB re {high:,.0f} count]", fontsize=8.0)
-    bar.outline.set_visible(False)
+    least = Normalize(float(20.0 * np.log10(low / high)), 0.0)
+    _draw_image(figure, axes, decibel, extent, least, f"{what}[dB re {high:,.0f} count]")
 
 
-def _draw_decisions(axes: Axes, stack: NodeStack, extent: tuple[float, float, float, float]) -> None:
+def draw_share(figure: Figure, axes: Axes, image: NDArray[Any], extent: Extent) -> None:
+    """Draw values (n_rows, n_columns) from 0 to 1."""
+    from matplotlib.colors import Normalize
+
+    image = shrink_by_maximum(image, max_rows=MAX_ROWS, max_columns=MAX_COLUMNS)
+    _draw_image(figure, axes, image, extent, Normalize(0.0, 1.0), "of the largest from there on")
+
+
+def draw_hits(axes: Axes, decisions: NDArray[Any], extent: Extent) -> None:
+    """Draw decisions (n_rows, n_columns): what is above 0."""
     from matplotlib.colors import ListedColormap
 
-    axes.set_title("(c) Decisions")
-    image = shrink_by_maximum(stack.decisions, max_rows=MAX_ROWS, max_columns=MAX_COLUMNS)
+    image = shrink_by_maximum(decisions, max_rows=MAX_ROWS, max_columns=MAX_COLUMNS)
     axes.imshow(
         image > 0,
         origin="lower",
@@ -154,6 +154,24 @@ def _draw_decisions(axes: Axes, stack: NodeStack, extent: tuple[float, float, fl
         vmax=1,
         interpolation="nearest",
     )
+
+
+def _draw_image(
+    figure: Figure, axes: Axes, image: NDArray[Any], extent: Extent, norm: Normalize, label: str
+) -> None:
+    drawn = axes.imshow(
+        image,
+        origin="lower",
+        aspect="auto",
+        extent=extent,
+        cmap=style.AMPLITUDE_MAP,
+        interpolation="nearest",
+        norm=norm,
+    )
+    axes.grid(False)
+    bar = figure.colorbar(drawn, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)))
+    bar.set_label(label, fontsize=8.0)
+    bar.outline.set_visible(False)
 
 
 def _draw_clusters(

@@ -102,6 +102,7 @@ def new_panels(
     *,
     legend: bool,
     right_in: float = 0.1,
+    share_x: bool = True,
     share_y: bool = False,
 ) -> tuple[Figure, Any]:
     """Return a figure and its axes (n_rows, n_columns) in fixed places: faster than one laid out."""
@@ -116,9 +117,9 @@ def new_panels(
         bottom=(0.82 if legend else 0.5) / height_in,
         top=1.0 - 0.35 / height_in,
         hspace=0.22,
-        wspace=0.17,
+        wspace=0.17 if share_x else 0.3,
     )
-    return figure, spacing.subplots(squeeze=False, sharex=True, sharey=share_y)
+    return figure, spacing.subplots(squeeze=False, sharex=share_x, sharey=share_y)
 
 
 def save_png(figure: Figure, path: Path) -> None:
