@@ -9,7 +9,7 @@ from pathlib import Path
 from echofuse import __version__
 from echofuse.errors import InputError, TargetError
 
-CASES = ("sensor-radar",)
+CASES = ("sensor-radar", "through-wall")
 TARGETS = ("inprocess", "process", "cortex-m7")
 TARGET = "TARGET"
 

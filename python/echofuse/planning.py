@@ -11,7 +11,7 @@ from echofuse import _core
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.errors import InputError, problem
 from echofuse.pipeline import hub_config
-from echofuse.site import Site, apply_settings
+from echofuse.site import PIPELINES, Site, apply_settings
 from echofuse.site.stages import PlanConfig
 
 GRID_STEPS = 160  # along the longer side
@@ -47,7 +47,10 @@ class Plan:
 
 
 def plan_site(site: Site) -> Plan:
-    """Return coverage and attainable accuracy all over the site's area."""
+    """Return coverage and attainable accuracy all over the site's area; not of a site behind a wall."""
+    if PIPELINES[site.pipeline].behind_wall:
+        expected = "sensor_radar: a plan knows the paths of free space alone"
+        raise InputError(problem(site.name, "pipeline.name", expected, site.pipeline))
     config = PlanConfig()
     apply_settings(config, site.settings)
     budget = config.coverage

@@ -17,6 +17,10 @@ POINT_DTYPE = np.dtype(
     [("frame", "i4"), ("time_us", "i8"), ("x_m", "f4"), ("y_m", "f4"), ("members", "f4"), ("weight", "f4")]
 )
 
+#: A row a detection in a through-wall hub's frame. node: of the site's nodes; owner: the track that took it,
+#: or minus the number of the couple that it was paired into, or 0.
+ASSOCIATED_DTYPE = np.dtype([("frame", "i4"), ("node", "i4"), ("path_m", "f4"), ("owner", "i4")])
+
 
 @dataclass(kw_only=True)
 class NodeStack:
@@ -55,8 +59,7 @@ class RunResult:
     baseline_metrics: dict[str, float]
     #: POINT_DTYPE by way: what the simpler ways located
     compared_points: dict[str, NDArray[np.void]] = field(default_factory=dict)
-    #: per frame (n, n_nodes + 1), of a line of antennas: each node's path [m], and the couple's track or 0
-    couples: list[NDArray[np.float32]] = field(default_factory=list)
+    associated: NDArray[np.void] = field(default_factory=lambda: np.zeros(0, ASSOCIATED_DTYPE))
     target: str = "inprocess"  # what it ran on
     counters: dict[str, dict[str, int]] = field(
         default_factory=dict

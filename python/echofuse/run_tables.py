@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from echofuse.baselines import baseline_of
 from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, Recording
-from echofuse.result import POINT_DTYPE, NodeStack, ResponseStack, RunResult
+from echofuse.result import ASSOCIATED_DTYPE, POINT_DTYPE, NodeStack, ResponseStack, RunResult
 from echofuse.site import Site
 
 __all__ = ["FrameOutput", "NodeOutput", "RunTables", "Scan", "Taps"]
@@ -66,7 +66,7 @@ class RunTables:
         self._shown: dict[str, Taps] = {}
         self._compared = baseline_of(recording.pipeline, config)
         self._compared_points: dict[str, list[NDArray[np.void]]] = {}
-        self._couples: list[NDArray[np.float32]] = []
+        self._associated: list[NDArray[np.void]] = []
 
     def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
         """Take what a node said of a scan; `shown` when the report's pictures are of this one."""
@@ -92,8 +92,8 @@ class RunTables:
         self._waiting = []
         self._points.append(_point_rows(number, frame.time_us, frame.points))
         self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
-        if "couples" in frame.taps:
-            self._couples.append(frame.taps["couples"])
+        if "associated" in frame.taps:
+            self._associated.append(_associated_rows(number, frame.taps))
         dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
         compared = self._compared.process(frame, dt_s)
         self._baseline.append(_track_rows(number, frame.time_us, compared.tracks))
@@ -112,7 +112,7 @@ class RunTables:
             tracks=_joined(self._tracks, TRACK_DTYPE),
             baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
             compared_points={way: _joined(rows, POINT_DTYPE) for way, rows in self._compared_points.items()},
-            couples=self._couples,
+            associated=_joined(self._associated, ASSOCIATED_DTYPE),
             metrics={},
             baseline_metrics={},
             counters=counters,
@@ -162,6 +162,13 @@ def _point_rows(frame: int, time_us: int, points: NDArray[np.float32]) -> NDArra
     rows["frame"], rows["time_us"] = frame, time_us
     for column, name in enumerate(("x_m", "y_m", "members", "weight")):
         rows[name] = points[:, column]
+    return rows
+
+
+def _associated_rows(frame: int, taps: Taps) -> NDArray[np.void]:
+    rows = np.zeros(len(taps["frame"]), ASSOCIATED_DTYPE)
+    rows["frame"], rows["owner"] = frame, taps["associated"]
+    rows["node"], rows["path_m"] = taps["frame"][:, 0], taps["frame"][:, 1]
     return rows
 
 

@@ -73,8 +73,8 @@ def responses(result: RunResult, name: str) -> str:
         "of the sequence: the brightest line is the cross-talk; (b) turned until that is in its place, as "
         "far as the area reaches; (c) what moves; (d) each sample over the largest from it to the end, so "
         "that far people are as bright as near ones; (e) hits of the detector; (f) what may be a person, "
-        "and where each one's echo begins; (g) what is reported, and which of it belongs to a couple of "
-        f"traces{heard}, each track in its colour; (h) where the echoes truly were."
+        "and where each one's echo begins; (g) what is reported: taken by a track, in its colour, or "
+        f"paired, or neither{heard}; (h) where the echoes truly were."
     )
 
 

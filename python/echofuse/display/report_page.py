@@ -169,6 +169,7 @@ def _value(key: str, value: float | None) -> str:
     if key.endswith("_fraction"):
         return f"{100.0 * value:.1f} %"
     for suffix, unit in (
+        ("_per_100_s", ""),
         ("_mps", " m/s"),
         ("_ms", " ms"),
         ("_ns", " ns"),

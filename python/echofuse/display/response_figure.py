@@ -107,18 +107,17 @@ def _draw_associated(axes: Axes, result: RunResult, node: NodeRecording, time_s:
     reported = result.responses[node.name].delays["detections"]
     _dots(axes, [rows[:, 0] * 1e9 for rows in reported], time_s, TRACES, "reported")
     places = [place.id for place in result.site.nodes]
-    if result.couples and node.node_id in places:
-        frames_s = setting.elapsed_s(result, result.frame_time_us)
-        counts = [len(rows) for rows in result.couples]
-        couples = np.concatenate(result.couples).reshape(sum(counts), -1)
-        at_s = np.repeat(frames_s[: len(counts)], counts)
-        at_ns = couples[:, places.index(node.node_id)] / SPEED_OF_LIGHT_MPS * 1e9
-        for owner in np.unique(couples[:, -1]).astype(int):
-            own = (couples[:, -1] == owner) & (at_ns > 0.0)
-            colour = style.track_colour(owner) if owner else style.QUIET
-            axes.scatter(at_ns[own], at_s[own], s=1.6, color=colour, linewidths=0, rasterized=True)
-        axes.scatter([], [], s=1.6, color=style.track_colour(1), label="of a track")
-        axes.scatter([], [], s=1.6, color=style.QUIET, label="of no track")
+    if result.associated.size and node.node_id in places:
+        own = result.associated[result.associated["node"] == places.index(node.node_id)]
+        at_s = setting.elapsed_s(result, result.frame_time_us)[own["frame"]]
+        at_ns = own["path_m"] / SPEED_OF_LIGHT_MPS * 1e9
+        owner = np.maximum(own["owner"], -1)  # one colour for all couples of no track
+        for which in np.unique(owner[owner != 0]):
+            colour = style.track_colour(int(which)) if which > 0 else style.QUIET
+            chosen = owner == which
+            axes.scatter(at_ns[chosen], at_s[chosen], s=2.4, color=colour, linewidths=0, rasterized=True)
+        axes.scatter([], [], s=2.4, color=style.track_colour(1), label="of a track")
+        axes.scatter([], [], s=2.4, color=style.QUIET, label="paired")
     if axes.collections:
         axes.legend(loc="upper left", markerscale=3.0, handlelength=1.0, handletextpad=0.2)
 

@@ -63,6 +63,7 @@ def check_before_wall(
     blind_zone_s: after the cross-talk; echoes that begin within are not reported.
     """
     _, tx_y, tx_z = tx_m = nodes[0].tx_position_m
+    before = len(problems.lines)
     for i, node in enumerate(nodes, start=1):
         rx_x, rx_y, rx_z = node.rx_position_m
         if math.dist(node.tx_position_m, tx_m) > SAME_PLACE_M:
@@ -78,6 +79,8 @@ def check_before_wall(
     if nearest_y <= tx_y + wall.thickness_m:
         expected = f"an area behind the wall: y above {tx_y + wall.thickness_m:g}, antennas and thickness"
         problems.add("site.area", expected, f"y = {nearest_y:g}")
+    if len(problems.lines) > before:
+        return
     depth_m = min(_nearest_depth_m(node, wall, blind_zone_s) for node in nodes)
     if depth_m <= wall.thickness_m:
         expected = f"a wall before the nearest range: blind_zone_s = {blind_zone_s:g} ends at {depth_m:.2f} m"

@@ -156,12 +156,17 @@ class _Root:
         rows = self.tree.get("node", [])
         for i, row in enumerate(rows if isinstance(rows, list) else [], start=1):
             value = row.get("time_zero") if isinstance(row, dict) else None
-            if isinstance(value, str):
-                own = Problems(self.problems.source)
-                check_settings({"time_zero": value}, (config,), own)
-                self.problems.lines += [
-                    line.replace("pipeline.time_zero", f"node[{i}].time_zero") for line in own.lines
-                ]
+            if not isinstance(value, str):
+                continue
+            if hasattr(getattr(config, "time_zero", None), "fields"):  # a stage there, and no choice
+                key, expected = f"node[{i}].time_zero", "no such setting: the cross-talk tells time zero"
+                self.problems.add(key, expected, value)
+                continue
+            own = Problems(self.problems.source)
+            check_settings({"time_zero": value}, (config,), own)
+            self.problems.lines += [
+                line.replace("pipeline.time_zero", f"node[{i}].time_zero") for line in own.lines
+            ]
 
     def truth(self) -> TruePath | None:
         if "truth" not in self.tree:

@@ -89,7 +89,10 @@ def _compiled(name: str) -> Any:
 
 
 PIPELINES = {
-    "sensor_radar": PipelineKind(node="SensorRadarNode", hub="SensorRadarHub", least_nodes=3, most_nodes=16)
+    "sensor_radar": PipelineKind(node="SensorRadarNode", hub="SensorRadarHub", least_nodes=3, most_nodes=16),
+    "through_wall_2d": PipelineKind(
+        node="ThroughWallNode", hub="ThroughWallHub", least_nodes=2, most_nodes=8, behind_wall=True
+    ),
 }
 
 
