@@ -23,7 +23,7 @@ from echofuse.site import PIPELINES, Site
 PATH_MATCH_M = 0.6  # a detection this near a person's path is the person's
 GHOST_PREFIX = {"assignment": "paired_", "all_pairs": "all_pairs_"}  # of a metric, by pairing rule
 SETTLE_S = 1.0  # of a simulated run; tracks need some frames to begin
-SETTLE_BEHIND_WALL_S = 2.0  # 24 responses of 0.074 s learn time zero and background; then tracks begin
+SETTLE_BEHIND_WALL_S = 2.0  # 13 responses of 0.074 s learn time zero and background; then tracks begin
 
 
 def settle_s(pipeline: str) -> float:

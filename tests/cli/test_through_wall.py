@@ -20,7 +20,7 @@ from echofuse.site import example_site
 
 DURATION_S = 12.0
 RESPONSES = 162  # of 0.074 s
-SETTLED = 24  # responses until time zero and background are known
+SETTLED = 13  # responses until time zero and background are known
 Scans = NDArray[np.float32]
 
 

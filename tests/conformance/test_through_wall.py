@@ -60,8 +60,8 @@ def test_every_kind_of_response_is_judged_or_counted_as_the_reference_does(
         assert counted["time_zero_moved"] == (kind == "power-up")
         assert counted["rejected_responses"] == counted["truncated_detections"] == 0
         assert states["detections"] > 5
-    assert all(states["settling"] == 24 for kind, states in seen.items() if kind != "power-up")
-    assert seen["power-up"]["settling"] == 48
+    assert all(states["settling"] == 13 for kind, states in seen.items() if kind != "power-up")
+    assert seen["power-up"]["settling"] == 26
     assert seen["power-up"]["cross_talk_missing"] == 2  # until the third says that the cross-talk has moved
     assert seen["saturated"]["saturated"] == LASTS
     assert seen["dead"]["dead"] == LASTS

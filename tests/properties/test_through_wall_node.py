@@ -15,7 +15,7 @@ C = 299792458.0
 FS = 4.5e9
 N_SAMPLES = 511
 CROSS_TALK = 6.0  # [sample] 0.4 m
-LEARNING, SETTLING = 10, 14
+LEARNING, SETTLING = 5, 8
 SETTLED = LEARNING + SETTLING
 WIDTH = 2.2  # [sample] of a pulse, to 1 / e of its height
 EDGE = WIDTH * np.sqrt(np.log(2.0))  # [sample] from half the envelope's height to its peak
@@ -185,7 +185,7 @@ def test_without_cross_talk_there_are_only_empty_reports() -> None:
         assert (status, len(detections), core.report_ready(), core.ready()) == (OK, 0, True, False)
     counted = core.counters()
     assert counted["settling_responses"] == LEARNING
-    assert counted["cross_talk_missing"] == counted["responses"] - LEARNING == 40
+    assert counted["cross_talk_missing"] == counted["responses"] - LEARNING == 45
 
 
 @pytest.mark.parametrize("trouble", ["dead_responses", "saturated_responses", "cross_talk_missing"])
@@ -288,7 +288,7 @@ def test_no_input_gives_a_delay_that_is_not_finite_or_not_ascending(
 def test_taps_do_not_change_the_report_and_float64_is_refused() -> None:
     first, second, rng = node_of(), node_of(), np.random.default_rng(14)
     for t in range(40):
-        heard = response(rng, [100.0 + t] if t > 24 else [])
+        heard = response(rng, [100.0 + t] if t > LEARNING + SETTLING else [])
         np.testing.assert_array_equal(first.process(heard, t)[1], second.process_with_taps(heard, t)[1])
     with pytest.raises(TypeError):
         first.process(heard.astype(np.float64), 0)

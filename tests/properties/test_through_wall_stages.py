@@ -86,9 +86,10 @@ def test_the_cross_talk_comes_to_its_place_wherever_the_response_begins(
     stage = _core.TimeZeroFinder()
     assert stage.configure(_core.TimeZeroConfig(), 511, 6.0) == OK
     turned = np.roll(scale * response, start).astype(np.float32)
-    for index in range(11):
+    learning = _core.TimeZeroConfig().learning_responses
+    for index in range(learning + 1):
         status, result, rotated = stage.process(turned)
-        assert (status, result.found) == (OK, index == 10)
+        assert (status, result.found) == (OK, index == learning)
     assert result.rotation_samples == start
     assert result.fraction_samples == pytest.approx(fraction, abs=0.02)  # a parabola is not a Gaussian
     np.testing.assert_array_equal(rotated, np.roll(turned, -start))

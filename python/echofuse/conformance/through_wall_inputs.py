@@ -13,7 +13,7 @@ from echofuse.simulation.through_wall import ThroughWallSimulation
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 
 KINDS = ("plain", "power-up", "saturated", "dead", "no cross-talk")  # of a seed, by turns
-SETTLED = 24  # responses until time zero and background are known, by default
+SETTLED = 13  # responses until time zero and background are known, by default
 RESPONSES = SETTLED + 12
 AT = SETTLED + 4  # where something goes wrong
 LASTS = 3  # responses

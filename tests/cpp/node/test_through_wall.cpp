@@ -18,7 +18,7 @@ using node::ThroughWallNodeConfig;
 namespace {
 
 constexpr int kSamples = 511;
-constexpr int kSettled = 24;  // responses: 10 for time zero, 14 for the background
+constexpr int kSettled = 13;  // responses: 5 for time zero, 8 for the background
 constexpr float kRate = 4.5e9f;
 
 float echo(int k, float place, float carrier) {

@@ -35,7 +35,7 @@ struct ThroughWallNodeConfig {
   int saturated_samples = 2;      ///< [sample] at full scale that a response may have and be trusted, >= 0
   TimeZeroConfig time_zero;
   /// Its learning_scans settle the exponential average, which at first still holds the people of the first responses.
-  ClutterConfig clutter = {ClutterMethod::kExponentialAverage, 0.95f, 14};
+  ClutterConfig clutter = {ClutterMethod::kExponentialAverage, 0.95f, 8};
   signal::EnvelopeConfig envelope;
   WeakSignalConfig weak_signal;
   GaussianCfarConfig gaussian_cfar;

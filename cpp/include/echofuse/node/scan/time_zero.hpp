@@ -11,7 +11,7 @@
 namespace echofuse::node {
 
 struct TimeZeroConfig {
-  int learning_responses = 10;  ///< whose mean shows the cross-talk, >= 1
+  int learning_responses = 5;  ///< whose mean shows the cross-talk, >= 1
   float strong_fraction =
       0.5f;  ///< of the largest magnitude: a maximum that may be the cross-talk, in (0, 1]
   float least_peak_factor = 10.0f;  ///< largest over mean magnitude, below which there is no cross-talk, > 1
