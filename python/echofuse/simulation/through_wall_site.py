@@ -68,8 +68,9 @@ def site_walkers_behind_wall(scene: ThroughWallScene, count: int) -> tuple[Perso
     """Return the case study's people, their walks stretched from its room to the scene's, their pace kept."""
     model, room = through_wall_scene().room, scene.room
 
-    def stretched(point_m: tuple[float, float]) -> tuple[float, float]:
-        return _stretched(point_m[0], model, room, 0), _stretched(point_m[1], model, room, 1)
+    def stretched(point_m: tuple[float, ...]) -> tuple[float, ...]:
+        x, y, *height = point_m
+        return _stretched(x, model, room, 0), _stretched(y, model, room, 1), *height
 
     return tuple(
         replace(
