@@ -35,7 +35,7 @@ def health_lines(result: RunResult) -> list[str]:
             if count:
                 share = f" of {counts[of]}" if of in counts else ""
                 lines.append(f"{node}: {counter} {count}{share}: {meaning}")
-        if counts.get(SETTLING) and _judged(counts) == 0:
+        if counts.get(SETTLING) and "responses" in counts and _judged(counts) == 0:
             meaning = "time zero and background were still being learnt when it ended"
             lines.append(f"{node}: {SETTLING} {counts[SETTLING]} of {counts['responses']}: {meaning}")
     return lines
@@ -44,4 +44,4 @@ def health_lines(result: RunResult) -> list[str]:
 def _judged(counts: dict[str, int]) -> int:
     """Return how many responses gave a report that means something."""
     unjudged = ("dead_responses", "saturated_responses", "cross_talk_missing", SETTLING)
-    return counts["responses"] - sum(counts[name] for name in unjudged)
+    return counts["responses"] - sum(counts.get(name, 0) for name in unjudged)
