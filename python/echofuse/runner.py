@@ -3,12 +3,13 @@
 import json
 import math
 from argparse import Namespace
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from echofuse.cases import simulated, site_of_case
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display import setting
 from echofuse.display.health import health_lines
@@ -17,7 +18,7 @@ from echofuse.errors import InputError, problem
 from echofuse.pipeline import check_positions, process_recording
 from echofuse.recording import Recording, read, write
 from echofuse.result import RunResult
-from echofuse.site import PIPELINES, Site, bare_site, example_site, load_site, parse_site
+from echofuse.site import PIPELINES, Site, bare_site, load_site, parse_site
 
 #: What `run --seeds` prints of each seed, by pipeline.
 SEED_COLUMNS = {
@@ -42,7 +43,6 @@ SEED_COLUMNS = {
         "all_pairs_ghosts_per_response",
     ),
 }
-MOST_BEHIND_WALL = 4  # people whose walks the case study knows
 TRACK_STATES = ("unconfirmed", "confirmed", "silent")
 
 
@@ -50,8 +50,8 @@ def run(options: Namespace) -> int:
     """Simulate a case or a site, process it, and write its folder."""
     if options.seeds is not None:
         return _run_seeds(options)
-    site, name, people = _site_of_case(options.case, options.people)
-    recording = _simulated(site, options, people, options.seed)
+    site, name, people = site_of_case(options.case, options.people)
+    recording = simulated(site, options.case, people, options.seed, options.duration)
     result = _processed(recording, site, options, options.seed)
     folder = options.out or Path("runs") / f"{name}-{options.seed}"
     return _finish(result, folder, report=not options.no_report)
@@ -206,26 +206,6 @@ def _replayed(recording: Recording, site: Site, target: str) -> RunResult:
     return replay(recording, site, recording.emulated, target=target)
 
 
-def _site_of_case(case: str, people: int | None) -> tuple[Site, str, int]:
-    """Return the case's site, its name, and how many people walk; several have their own (decision 0004)."""
-    if case == "sensor-radar":
-        n_people = 1 if people is None else people
-        return example_site("sensor_radar" if n_people <= 1 else "sensor_radar_several"), case, n_people
-    if case == "through-wall":
-        site, name = example_site("through_wall"), case
-    else:
-        path = Path(case)
-        if path.suffix != ".toml":
-            cases = "a case (sensor-radar, through-wall) or a site file (SITE.toml)"
-            raise InputError(problem(case, "", cases))
-        site, name = load_site(path), path.stem
-    if not PIPELINES[site.pipeline].behind_wall:
-        return site, name, 1 if people is None else people
-    if people is not None and people > MOST_BEHIND_WALL:
-        raise InputError(problem("--people", "", f"0 to {MOST_BEHIND_WALL} behind a wall", people))
-    return site, name, 2 if people is None else people
-
-
 def _site_of_recording(recording: Recording, options: Namespace) -> Site:
     chosen: Path | None = getattr(options, "site", None)
     if chosen is not None:
@@ -238,58 +218,16 @@ def _site_of_recording(recording: Recording, options: Namespace) -> Site:
     return bare_site(recording)
 
 
-def _simulated(site: Site, options: Namespace, people: int, seed: int) -> Recording:
-    simulated = _behind_wall if PIPELINES[site.pipeline].behind_wall else _around
-    recording = simulated(site, options, people, seed)
-    return replace(recording, pipeline=site.pipeline, site_toml=site.to_toml())
-
-
-def _around(site: Site, options: Namespace, people: int, seed: int) -> Recording:
-    from echofuse.simulation.scene import sensor_radar_scene
-    from echofuse.simulation.sensor_radar import CASE_STUDY_DURATION_S, case_study_people, simulate
-    from echofuse.simulation.site_scene import site_people, site_scene
-
-    if options.case == "sensor-radar":
-        scene, walkers = sensor_radar_scene(), case_study_people(people)
-    else:
-        scene = site_scene(site)
-        walkers = site_people(scene, people)
-    duration_s = CASE_STUDY_DURATION_S if options.duration is None else options.duration
-    return simulate(scene, walkers, seed=seed, duration_s=duration_s, progress=_simulating)
-
-
-def _behind_wall(site: Site, options: Namespace, people: int, seed: int) -> Recording:
-    from echofuse.simulation.through_wall import simulate_through_wall
-    from echofuse.simulation.through_wall_scene import (
-        CASE_STUDY_DURATION_S,
-        case_study_walkers,
-        through_wall_scene,
-    )
-    from echofuse.simulation.through_wall_site import site_scene_behind_wall, site_walkers_behind_wall
-
-    if options.case == "through-wall":
-        scene, walkers = through_wall_scene(), case_study_walkers(people)
-    else:
-        scene = site_scene_behind_wall(site)
-        walkers = site_walkers_behind_wall(scene, people)
-    duration_s = CASE_STUDY_DURATION_S if options.duration is None else options.duration
-    return simulate_through_wall(scene, walkers, seed=seed, duration_s=duration_s, progress=_simulating)
-
-
-def _simulating(frames: range) -> Iterable[int]:
-    return progress(frames, "simulating", len(frames))
-
-
 def _run_seeds(options: Namespace) -> int:
     """Run many seeds, print one line each and their mean."""
-    site, _, people = _site_of_case(options.case, options.people)
+    site, _, people = site_of_case(options.case, options.people)
     columns = SEED_COLUMNS[site.pipeline]
     rows: list[dict[str, float]] = []
     baselines: list[dict[str, float]] = []
     unaccounted = 0  # runs whose faults are not those in the counters
     print("seed  " + "  ".join(f"{column:>20s}" for column in columns))
     for seed in progress(options.seeds, "seeds", len(options.seeds)):
-        recording = _simulated(site, options, people, seed)
+        recording = simulated(site, options.case, people, seed, options.duration)
         result = _processed(recording, site, options, seed, taps=False)
         unaccounted += result.emulation is not None and bool(result.emulation.account.problems)
         rows.append(result.metrics)

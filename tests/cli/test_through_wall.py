@@ -160,6 +160,12 @@ def test_too_many_people(capsys: pytest.CaptureFixture[str]) -> None:
     assert "--people: expected 0 to 4 behind a wall, found 5" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("case", "period_s"), [("sensor-radar", "0.1"), ("through-wall", "0.074")])
+def test_too_short_a_run(capsys: pytest.CaptureFixture[str], case: str, period_s: str) -> None:
+    assert main(["run", case, "--duration", "0.05"]) == 2
+    assert f"--duration: expected at least one scan, {period_s} s, found 0.05" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", ["plan", "export-config"])
 def test_what_knows_the_sensor_radar_alone_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
