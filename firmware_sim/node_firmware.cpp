@@ -1,14 +1,15 @@
-/// A node of the pipeline sensor_radar: a raw scan in, a report out. The same source on every board.
+/// A node: a raw scan in, a report out. The same source for every pipeline (node_pipelines.hpp) and on every board.
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "board.hpp"
-#include "echofuse/node/node.hpp"
-#include "echofuse/node/registers.hpp"
 #include "machine.hpp"
+#include "node_pipelines.hpp"
 
 #ifdef ECHOFUSE_SITE_CONFIG
 #include ECHOFUSE_SITE_CONFIG  // made by `echofuse export-config`
@@ -20,6 +21,8 @@ namespace {
 constexpr link::RegisterField kCommandRegisters[] = {
     ECHOFUSE_REGISTER_AS(Commands, apply, "echofuse.apply"),
     ECHOFUSE_REGISTER_AS(Commands, taps, "echofuse.taps"),
+};
+constexpr link::RegisterField kEmptyRoomRegisters[] = {
     ECHOFUSE_REGISTER_AS(Commands, empty_room_scans_left, "echofuse.empty_room_scans_left"),
 };
 
@@ -28,18 +31,21 @@ constexpr link::RegisterField kCommandRegisters[] = {
 constexpr std::size_t kFrameBytes =
     link::kFrameHeaderBytes + link::kFrameCrcBytes + 9 + 4 * kMaxSamplesPerScan;
 
+template <class Pipeline>
 class NodeFirmware {
  public:
-  static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarNode;
+  static constexpr link::MachineKind kKind = Pipeline::kKind;
 
   Machine& machine() { return machine_; }
 
   void start() {
-#ifdef ECHOFUSE_SITE_CONFIG
-    (void)site::node_config(board::node_id(), staged_);
+#ifdef ECHOFUSE_SITE_CONFIG  // of another pipeline: this image has to be told over the link
+    if constexpr (std::is_invocable_v<decltype(site::node_config), std::uint16_t, typename Pipeline::Config&>)
+      (void)site::node_config(board::node_id(), staged_);
 #endif
-    machine_.add_registers(node::config_registers(), &staged_);
+    machine_.add_registers(Pipeline::registers(), &staged_);
     machine_.add_registers(kCommandRegisters, &machine_.commands);
+    if constexpr (Pipeline::kTakesEmptyRoom) machine_.add_registers(kEmptyRoomRegisters, &machine_.commands);
   }
 
   bool configure() {
@@ -66,18 +72,9 @@ class NodeFirmware {
     if (n_samples > 0) take_scan(n_samples, scan_time_us);
   }
 
-  bool healthy() const { return node_.counters().rejected_scans == 0; }
+  bool healthy() const { return Pipeline::healthy(node_); }
 
-  std::array<std::uint32_t, 7> counters() const {
-    const node::SensorRadarNodeCounters& c = node_.counters();
-    return {c.scans,
-            c.rejected_scans,
-            c.learning_scans,
-            c.direct_path_missing,
-            c.alignment_doubts,
-            c.undetectable_scans,
-            c.truncated_detections};
-  }
+  auto counters() const { return Pipeline::counted(node_); }
 
  private:
   /// The hub's clock minus this one, by the message before, whose sending this one tells.
@@ -91,10 +88,12 @@ class NodeFirmware {
 
   void take_scan(std::size_t n_samples, std::int64_t time_us) {
     const Span<const float> scan{scan_.data(), std::min(n_samples, scan_.size())};
-    if (machine_.commands.empty_room_scans_left > 0) {
-      --machine_.commands.empty_room_scans_left;
-      (void)node_.set_empty_room(scan);  // a scan that it cannot use is counted
-      return;
+    if constexpr (Pipeline::kTakesEmptyRoom) {
+      if (machine_.commands.empty_room_scans_left > 0) {
+        --machine_.commands.empty_room_scans_left;
+        (void)node_.set_empty_room(scan);  // a scan that it cannot use is counted
+        return;
+      }
     }
     node_.set_tap_sink(machine_.profiler.sink(machine_.commands));
     machine_.profiler.begin();
@@ -108,15 +107,15 @@ class NodeFirmware {
 
   std::array<std::uint8_t, kFrameBytes> frame_{};
   std::array<float, kMaxSamplesPerScan> scan_{};
-  Machine machine_{frame_, "echofuse.sensor_radar.node"};
-  node::SensorRadarNodeConfig staged_;
-  node::SensorRadarNode node_;
+  Machine machine_{frame_, Pipeline::kName};
+  typename Pipeline::Config staged_;
+  typename Pipeline::Node node_;
   link::Detections report_;
   std::int64_t synchronization_us_ = 0;
   std::int64_t hub_clock_ahead_us_ = 0;
 };
 
-NodeFirmware firmware;
+NodeFirmware<node_pipelines::ECHOFUSE_PIPELINE> firmware;
 
 }  // namespace
 }  // namespace echofuse::firmware

@@ -10,13 +10,15 @@ import numpy as np
 import pytest
 
 from echofuse.cli import main
-from echofuse.conformance.choices import NODE_CHOICES, Choice
+from echofuse.conformance.choices import NODE_CHOICES, THROUGH_WALL_NODE_CHOICES, Choice
 from echofuse.conformance.comparison import Row, Scoreboard
 from echofuse.conformance.firmware_target import FirmwareConformanceTarget
 from echofuse.conformance.hub_inputs import simulated_hub_inputs
 from echofuse.conformance.hub_taps import conform_hub
 from echofuse.conformance.inputs import simulated_inputs
 from echofuse.conformance.node_taps import conform_node
+from echofuse.conformance.through_wall_inputs import simulated_responses
+from echofuse.conformance.through_wall_taps import conform_through_wall_node
 
 DEFAULT = Choice(name="default")
 
@@ -39,6 +41,8 @@ def test_one_board_takes_one_choice_after_the_other(target: FirmwareConformanceT
     for tracker in ("kalman", "range", "phd"):
         choice = Choice(name=tracker, settings={"tracker": tracker})
         conform_hub(board, choice, target, list(simulated_hub_inputs(1)))
+    for choice in THROUGH_WALL_NODE_CHOICES[:4]:
+        conform_through_wall_node(board, choice, target, list(simulated_responses(2)))
     assert [row.failures for row in board.rows() if row.failures] == []
 
 
@@ -49,8 +53,8 @@ class OtherwiseConfigured(FirmwareConformanceTarget):
         super().__init__("process")
         self.role, self.register, self.value = role, register, value
 
-    def _machine(self, role: str, config: Any) -> Any:
-        opened = super()._machine(role, config)
+    def _machine(self, pipeline: str, role: str, config: Any) -> Any:
+        opened = super()._machine(pipeline, role, config)
         if role == self.role:
             written = opened.machine.write_register(self.register, self.value)
             assert written == pytest.approx(self.value)
@@ -87,13 +91,29 @@ def test_a_hub_that_is_configured_otherwise_fails_there(register: str, value: ob
     assert tap in [row.tap for row in failed(board)]
 
 
+@pytest.mark.parametrize(
+    ("register", "value", "tap"),
+    [
+        ("clutter.averaging_factor", 0.949, "subtracted"),
+        ("gaussian_cfar.deviations", 0.72, "decisions"),
+        ("leading_edge.fraction", 0.501, "leading_edges"),
+    ],
+)
+def test_a_receiver_that_is_configured_otherwise_fails_there(register: str, value: object, tap: str) -> None:
+    board = Scoreboard()
+    with closing(OtherwiseConfigured("node", register, value)) as target:
+        conform_through_wall_node(board, DEFAULT, target, list(simulated_responses(2)))
+    assert tap in [row.tap for row in failed(board)]
+
+
 @pytest.mark.slow
+@pytest.mark.parametrize(("case", "rows"), [("sensor-radar", 436), ("through-wall", 130)])
 @pytest.mark.parametrize("name", ["process", "cortex-m7"])
-def test_every_tap_of_every_choice_agrees(name: str, tmp_path: Path) -> None:
-    assert main(["conform", "--target", name, "--seeds", "2", "--out", str(tmp_path)]) == 0
+def test_every_tap_of_every_choice_agrees(name: str, case: str, rows: int, tmp_path: Path) -> None:
+    assert main(["conform", case, "--target", name, "--seeds", "2", "--out", str(tmp_path)]) == 0
     report = json.loads((tmp_path / "conformance.json").read_text())
     assert (report["target"], report["passed"]) == (name, True)
-    assert sum(len(rows) for rows in report["rows"].values()) == 436
+    assert sum(len(table) for table in report["rows"].values()) == rows
 
 
 def test_an_image_that_is_missing_is_one_line(

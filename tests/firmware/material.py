@@ -1,4 +1,4 @@
-"""What the measured images are fed: the case study, and the worst that `limits.hpp` lets in."""
+"""What the measured images are fed: the case studies, and the worst that `limits.hpp` lets in."""
 
 from collections import defaultdict
 from dataclasses import dataclass
@@ -15,10 +15,23 @@ from echofuse.pipeline import SensorRadar, hub_config, node_config, scans_in_tim
 from echofuse.recording import NodeRecording, Recording
 from echofuse.simulation.scene import sensor_radar_scene
 from echofuse.simulation.sensor_radar import case_study_people, simulate
+from echofuse.simulation.through_wall import simulate_through_wall
+from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 from echofuse.site import example_site
 
 SITE = example_site("sensor_radar")
 PERIOD_US = 100_000
+RESPONSE_PERIOD_US = 74_000
+THROUGH_WALL_S = 9.0  # in which both people walk, meet and turn
+
+
+@dataclass
+class NodeFeed:
+    """A node's configuration, and its radar."""
+
+    config: Any
+    source: NodeRecording
+    period_us: int = PERIOD_US
 
 
 @dataclass
@@ -27,6 +40,7 @@ class HubFeed:
 
     config: Any
     frames: list[bytes]
+    period_us: int = PERIOD_US
 
 
 @cache
@@ -35,15 +49,32 @@ def case_study() -> Recording:
     return simulate(sensor_radar_scene(), case_study_people(1), seed=0)
 
 
-def node_of_the_case_study() -> tuple[Any, NodeRecording]:
-    """Return the configuration and the scans of its first node."""
+@cache
+def through_wall_case_study() -> Recording:
+    """Two people behind the wall."""
+    return simulate_through_wall(
+        through_wall_scene(), case_study_walkers(2), seed=0, duration_s=THROUGH_WALL_S
+    )
+
+
+def sensor_radar_node() -> NodeFeed:
+    """Return the configuration and the scans of the case study's first node."""
     source = case_study().nodes[0]
     (place,) = (place for place in SITE.nodes if place.id == source.node_id)
-    return node_config(SITE, place, source), source
+    return NodeFeed(node_config(SITE, place, source), source)
 
 
-def hub_of_the_case_study() -> HubFeed:
-    """Return what the nodes report on it."""
+def through_wall_node() -> NodeFeed:
+    """Return the configuration and the responses of the case study's first receiver."""
+    source = through_wall_case_study().nodes[0]
+    config = _core.ThroughWallNodeConfig(node_id=source.node_id, n_samples=source.scans.shape[1])
+    config.sample_rate_hz = source.sample_rate_hz
+    config.baseline_m = float(np.linalg.norm(source.rx_position_m - source.tx_position_m))
+    return NodeFeed(config, source, RESPONSE_PERIOD_US)
+
+
+def sensor_radar_hub() -> HubFeed:
+    """Return what the case study's nodes report."""
     nodes = case_study().nodes
     radar = SensorRadar(SITE, nodes)
     frames: dict[int, bytes] = defaultdict(bytes)

@@ -9,11 +9,19 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from material import PERIOD_US, HubFeed, crowd, hub_of_the_case_study, node_of_the_case_study
+from material import (
+    HubFeed,
+    NodeFeed,
+    crowd,
+    sensor_radar_hub,
+    sensor_radar_node,
+    through_wall_node,
+)
 from static_stack import deepest, functions
 
 from echofuse.emulation.firmware import HUB_ID, Machine
@@ -28,6 +36,14 @@ FORBIDDEN = {"malloc", "free", "calloc", "realloc", "_malloc_r", "_free_r", "_sb
 FORBIDDEN |= {"__cxa_throw", "__cxa_guard_acquire"}
 FORBIDDEN_OPERATORS = ("_Znw", "_Zna", "_Zdl", "_Zda")  # new and delete
 
+#: What each image is fed with, and what is the worst that its capacities let in.
+FEEDS: dict[str, Callable[[], NodeFeed | HubFeed]] = {
+    "sensor_radar_node": sensor_radar_node,
+    "sensor_radar_hub": sensor_radar_hub,
+    "through_wall_node": through_wall_node,
+}
+WORST: dict[str, Callable[[], NodeFeed | HubFeed]] = {"sensor_radar_hub": lambda: crowd(16, 16)}
+
 Figures = dict[str, int]
 
 
@@ -36,28 +52,33 @@ def limits() -> dict[str, Any]:
     return tomllib.loads((HERE / "limits.toml").read_text())
 
 
-def run_node() -> Machine:
-    """Let a node process its scans of the case study; the machine, with its profile of each scan."""
-    config, source = node_of_the_case_study()
-    with open_board("cortex-m7", "node", source.name, source.node_id) as board:
+def run(image: str, feed: NodeFeed | HubFeed) -> Machine:
+    """Let an image work on all that it is fed with; the machine, with its profile of each scan or frame."""
+    return run_node(image, feed) if isinstance(feed, NodeFeed) else run_hub(image, feed)
+
+
+def run_node(image: str, feed: NodeFeed) -> Machine:
+    """Let a node process its scans; the machine, with its profile of each scan."""
+    source = feed.source
+    with open_board("cortex-m7", image, source.name, source.node_id) as board:
         node = Machine(board, source.node_id)
-        node.configure(config)
+        node.configure(feed.config)
         node.show_empty_room([] if source.reference is None else list(source.reference))
         for index, samples in enumerate(source.scans):
-            time_us = (index + 1) * PERIOD_US
+            time_us = (index + 1) * feed.period_us
             node.step(time_us, scan=np.ascontiguousarray(samples, np.float32), scan_time_us=time_us)
     if len(node.profiles) != len(source.scans):
         raise RuntimeError(f"{len(node.profiles)} of {len(source.scans)} scans were processed")
     return node
 
 
-def run_hub(feed: HubFeed) -> Machine:
+def run_hub(image: str, feed: HubFeed) -> Machine:
     """Let a hub process the reports of each frame; the machine, with its profile of each frame."""
-    with open_board("cortex-m7", "hub", "hub", HUB_ID) as board:
+    with open_board("cortex-m7", image, "hub", HUB_ID) as board:
         hub = Machine(board, HUB_ID)
         hub.configure(feed.config)
         for index, reports in enumerate(feed.frames):
-            hub.step((index + 1) * PERIOD_US, reports)
+            hub.step((index + 1) * feed.period_us, reports)
     if len(hub.profiles) != len(feed.frames):
         raise RuntimeError(f"{len(hub.profiles)} of {len(feed.frames)} frames were closed")
     return hub
@@ -70,11 +91,11 @@ def stage_names() -> dict[int, str]:
     return {int(number): re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name, number in found}
 
 
-def measure(role: str) -> Figures:
-    """Return all figures of the image of a role: "node" or "hub"."""
-    image = firmware_image("cortex-m7", role)
+def measure(name: str) -> Figures:
+    """Return all figures of an image."""
+    image = firmware_image("cortex-m7", name)
     size = image_size(image)
-    machine = run_node() if role == "node" else run_hub(hub_of_the_case_study())
+    machine = run(name, FEEDS[name]())
     totals = [profile[PROFILE_TOTAL] for profile in machine.profiles]
     figures = {
         "flash_bytes": size.flash_bytes,
@@ -89,8 +110,8 @@ def measure(role: str) -> Figures:
     for tap in stages:  # in the order in which they run
         counts = [profile[tap] for profile in machine.profiles if tap in profile]
         figures[f"instructions_of_{names[tap]}"] = round(np.mean(counts))
-    if role == "hub":
-        worst = run_hub(crowd(16, 16))
+    if name in WORST:
+        worst = run(name, WORST[name]())
         figures["instructions_worst_case"] = max(profile[PROFILE_TOTAL] for profile in worst.profiles)
     return figures
 
@@ -109,9 +130,9 @@ def main() -> int:
     options = parser.parse_args()
     lines = ["# Written by `make budgets`. A measured figure may differ by 3 %, up or down."]
     for entry in limits()["image"]:
-        figures = measure(entry["role"])
-        lines += ["", f"[{entry['role']}]", *(f"{name} = {value}" for name, value in figures.items())]
-        print(f"\n| {entry['role']} | asked | measured |\n|---|---|---|")
+        figures = measure(entry["name"])
+        lines += ["", f"[{entry['name']}]", *(f"{name} = {value}" for name, value in figures.items())]
+        print(f"\n| {entry['name']} | asked | measured |\n|---|---|---|")
         for name, value in figures.items():
             asked = entry["at_most"].get(name)
             print(f"| {name.replace('_', ' ')} | {'' if asked is None else f'<= {asked:,}'} | {value:,} |")

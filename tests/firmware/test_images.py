@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from measure import BUDGETS, TOLERANCE, heap_symbols, limits, measure, run_node
+from measure import BUDGETS, FEEDS, TOLERANCE, heap_symbols, limits, measure, run
 from static_stack import Function, compilers_frames, deepest, functions, plain_name
 
 from echofuse.emulation.image_size import image_size
@@ -26,11 +26,11 @@ COMPILER = ["arm-none-eabi-g++", "-mcpu=cortex-m7", "-mthumb", "-O2", "-ffunctio
 
 
 def image_of(entry: dict[str, Any]) -> Path:
-    return firmware_image("cortex-m7", entry["role"])
+    return firmware_image("cortex-m7", entry["name"])
 
 
 def names(entry: dict[str, Any]) -> str:
-    return entry["role"]
+    return entry["name"]
 
 
 def compiled(folder: Path, source: str) -> Path:
@@ -61,9 +61,18 @@ def test_a_heap_would_be_seen(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)
+def test_an_image_holds_its_own_pipeline_alone(entry: dict[str, Any]) -> None:
+    listed = subprocess.run(
+        ["arm-none-eabi-nm", image_of(entry)], check=True, capture_output=True, text=True
+    ).stdout
+    held = {pipeline for pipeline in ("SensorRadar", "ThroughWall") if pipeline in listed}
+    assert held == {"ThroughWall" if entry["name"].startswith("through_wall") else "SensorRadar"}
+
+
+@pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
-    budgets = tomllib.loads(BUDGETS.read_text())[entry["role"]]
-    measured = measure(entry["role"])
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
+    measured = measure(entry["name"])
     too_much = {name: measured[name] for name, most in entry["at_most"].items() if measured[name] > most}
     assert too_much == {}
     off = {
@@ -76,7 +85,7 @@ def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)
 def test_the_stack_in_use_is_inside_the_stack_that_the_calls_add_up_to(entry: dict[str, Any]) -> None:
-    budgets = tomllib.loads(BUDGETS.read_text())[entry["role"]]
+    budgets = tomllib.loads(BUDGETS.read_text())[entry["name"]]
     assert (
         budgets["stack_painted_bytes"] <= budgets["stack_bytes"] + 64
     )  # painted from 64 bytes below its top
@@ -102,7 +111,7 @@ def test_frames_are_those_of_the_compiler(entry: dict[str, Any]) -> None:
 
 
 def test_a_board_out_of_step_says_so_and_stops() -> None:
-    with open_board("cortex-m7", "node", "rx1", 1) as board:
+    with open_board("cortex-m7", "sensor_radar_node", "rx1", 1) as board:
         os.write(board._front_end, b"x" * 40)
         with pytest.raises(
             BoardError, match=r"fault in step 1 .*: front-end out of step \(.*board.cpp:\d+\)"
@@ -112,7 +121,7 @@ def test_a_board_out_of_step_says_so_and_stops() -> None:
 
 def test_growing_out_of_the_stack_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """The node's image with less stack than it needs."""
-    data = bytearray(firmware_image("cortex-m7", "node").read_bytes())
+    data = bytearray(firmware_image("cortex-m7", "sensor_radar_node").read_bytes())
     stack_top = struct.unpack_from("<I", data, text_offset(data))[0]
     struct.pack_into("<I", data, text_offset(data), 0x20000000 + 1024)
     assert stack_top == 0x20000000 + 4096
@@ -120,7 +129,7 @@ def test_growing_out_of_the_stack_is_a_fault(monkeypatch: pytest.MonkeyPatch, tm
     (tmp_path / "cortex-m7" / "sensor_radar_node.elf").write_bytes(data)
     monkeypatch.setenv("ECHOFUSE_FIRMWARE", str(tmp_path))
     with pytest.raises(BoardError, match=r"rx1 .*: fault in step .*: stack overflow"):
-        run_node()
+        run("sensor_radar_node", FEEDS["sensor_radar_node"]())
 
 
 def text_offset(data: bytes) -> int:
@@ -137,7 +146,7 @@ def test_image_size_refuses_what_is_no_image(tmp_path: Path) -> None:
 
 
 def test_image_size_is_that_of_the_linker() -> None:
-    image = firmware_image("cortex-m7", "node")
+    image = firmware_image("cortex-m7", "sensor_radar_node")
     rows = subprocess.run(["arm-none-eabi-size", image], check=True, capture_output=True, text=True).stdout
     text, data, bss = map(int, rows.splitlines()[1].split()[:3])
     size = image_size(image)

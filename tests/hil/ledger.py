@@ -25,6 +25,13 @@ OF_TROUBLE = {
         "undetectable_scans",
         "truncated_detections",
     ),
+    *(
+        "rejected_responses",
+        "dead_responses",
+        "saturated_responses",
+        "cross_talk_missing",
+        "time_zero_moved",
+    ),
     *("dropped_tuples", "dropped_detections", "dropped_measurements", "dropped_points", "dropped_births"),
     *(f"link_{name}" for name in (*REJECTED, "repeated", "unsent", "refused_writes")),
 }
@@ -75,9 +82,10 @@ class Ledger:
             for key, value in expected.items():
                 if said[key] != value:
                     yield f"{name}: {key} is {said[key]}, injected {value}"
-            if "scans" in said and said["scans"] + said["rejected_scans"] != given["scans"]:
-                counted = f"{said['scans']} scans and {said['rejected_scans']} rejected"
-                yield f"{name}: {counted}, of {given['scans']}"
+            for what in ("scans", "responses"):
+                if what in said and said[what] + said[f"rejected_{what}"] != given["scans"]:
+                    counted = f"{said[what]} {what} and {said[f'rejected_{what}']} rejected"
+                    yield f"{name}: {counted}, of {given['scans']}"
             taken = said["link_frames"] + said["link_repeated"]
             if taken != given["frames"]:
                 yield f"{name}: link_frames {said['link_frames']}, of {given['frames']} intact ones sent"

@@ -36,7 +36,7 @@ def recording() -> Recording:
 
 @pytest.fixture(params=FIRMWARE_TARGETS)
 def node(request: pytest.FixtureRequest) -> Iterator[Machine]:
-    with open_board(request.param, "node", "rx1", 1) as board:
+    with open_board(request.param, "sensor_radar_node", "rx1", 1) as board:
         yield Machine(board, 1)
 
 
@@ -110,7 +110,7 @@ def test_garbage_on_the_link_is_counted_and_what_follows_is_answered(node: Machi
 
 @pytest.mark.parametrize("target", FIRMWARE_TARGETS)
 def test_a_hub_without_nodes_is_not_operational_until_it_has_some(target: str) -> None:
-    with open_board(target, "hub", "hub", HUB_ID) as board:
+    with open_board(target, "sensor_radar_hub", "hub", HUB_ID) as board:
         hub = Machine(board, HUB_ID)
         _, transfers = hub.step(1)
         modes = [t.payload[5] for t in transfers if t.port == codec.HEARTBEAT]
@@ -125,7 +125,7 @@ def test_a_hub_without_nodes_is_not_operational_until_it_has_some(target: str) -
 
 def test_a_board_that_ends_is_named_with_what_was_waited_for(injected: Ledger) -> None:
     injected.ends_unheard("rx4")
-    board = open_board("process", "node", "rx4", 4)
+    board = open_board("process", "sensor_radar_node", "rx4", 4)
     os.kill(board._process.pid, signal.SIGKILL)
     with pytest.raises(BoardError, match=r"rx4 \(process\): ended with status -9 while .* step 1"):
         board.step(5)
@@ -134,7 +134,7 @@ def test_a_board_that_ends_is_named_with_what_was_waited_for(injected: Ledger) -
 
 def test_a_board_that_hangs_is_named_and_what_was_heard_last(injected: Ledger) -> None:
     injected.ends_unheard("rx5")
-    board = open_board("process", "node", "rx5", 5)
+    board = open_board("process", "sensor_radar_node", "rx5", 5)
     board._patience_s = 1.0
     os.kill(board._process.pid, signal.SIGSTOP)
     with pytest.raises(
@@ -156,7 +156,7 @@ def test_a_missing_image_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     with pytest.raises(
         TargetError, match=r"sensor_radar_node\.elf: expected a firmware image .*make firmware"
     ):
-        firmware_image("cortex-m7", "node")
+        firmware_image("cortex-m7", "sensor_radar_node")
 
 
 def test_an_exported_site_compiles_and_is_the_site(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ SILENCE = np.zeros(1920, np.float32)
 
 
 def test_trouble_that_nobody_injected_is_told(injected: Ledger) -> None:
-    with open_board("process", "node", "rx1", 1) as board:
+    with open_board("process", "sensor_radar_node", "rx1", 1) as board:
         board.step(10, b"\0\x09abc\0")
     assert list(injected.problems()) == ["rx1: link_bad_cobs is 1, injected 0"]
     injected("rx1", link_bad_cobs=1)
@@ -17,7 +17,7 @@ def test_trouble_that_nobody_injected_is_told(injected: Ledger) -> None:
 
 
 def test_trouble_that_was_injected_and_not_counted_is_told(injected: Ledger) -> None:
-    with open_board("process", "node", "rx1", 1) as board:
+    with open_board("process", "sensor_radar_node", "rx1", 1) as board:
         board.step(10)
     injected("rx1", rejected_scans=1)
     assert list(injected.problems()) == ["rx1: rejected_scans is 0, injected 1"]
@@ -25,7 +25,7 @@ def test_trouble_that_was_injected_and_not_counted_is_told(injected: Ledger) -> 
 
 
 def test_a_scan_that_vanished_is_told(injected: Ledger) -> None:
-    with open_board("process", "node", "rx1", 1) as board:
+    with open_board("process", "sensor_radar_node", "rx1", 1) as board:
         board.step(10, scan=SILENCE, scan_time_us=10)
     injected("rx1", direct_path_missing=1)
     injected.given[board]["scans"] += 1
@@ -34,7 +34,7 @@ def test_a_scan_that_vanished_is_told(injected: Ledger) -> None:
 
 
 def test_a_board_that_was_not_asked_is_told(injected: Ledger) -> None:
-    board = open_board("process", "node", "rx1", 1)
+    board = open_board("process", "sensor_radar_node", "rx1", 1)
     assert ["never asked" in problem for problem in injected.problems()] == [True]
     board.close()
     assert list(injected.problems()) == []

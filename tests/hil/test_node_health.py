@@ -19,6 +19,8 @@ from echofuse.pipeline import hub_config, node_config, places_of
 from echofuse.recording import Recording
 from echofuse.simulation.scene import sensor_radar_scene
 from echofuse.simulation.sensor_radar import case_study_people, simulate
+from echofuse.simulation.through_wall import simulate_through_wall
+from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 from echofuse.site import example_site
 
 SITE = example_site("sensor_radar")
@@ -33,7 +35,12 @@ def walk() -> Recording:
     return simulate(sensor_radar_scene(), case_study_people(1), seed=0)
 
 
-# What both machines count of their link.
+@pytest.fixture(scope="module")
+def behind_wall() -> Recording:
+    return simulate_through_wall(through_wall_scene(), case_study_walkers(2), seed=0, duration_s=3.0)
+
+
+# What all machines count of their link.
 
 
 def sealed(payload: bytes, *, version: int = 1, index: int = 0x80000000, transfer_id: int = 0) -> bytes:
@@ -191,6 +198,78 @@ OF_A_NODE: dict[str, Provocation] = {
 }
 
 
+# What a node behind a wall counts. It takes ten responses to learn time zero, and 14 more for the background.
+
+LEARNING, SETTLED = 10, 24
+
+
+def responses(behind_wall: Recording, count: int) -> list[Scan]:
+    return [np.asarray(response, np.float32) for response in behind_wall.nodes[0].scans[:count]]
+
+
+def takes_responses(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    give(node, *responses(behind_wall, SETTLED + 6))
+    return {"responses": SETTLED + 6, "settling_responses": SETTLED, "ticks_max": SOME}
+
+
+def rejects_responses(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    (good,) = responses(behind_wall, 1)
+    bad = good.copy()
+    bad[100] = np.inf
+    give(node, good[:510], bad, good)
+    return {"responses": 1, "rejected_responses": 2, "settling_responses": 1}
+
+
+def hears_nothing(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    dead = np.full(511, 3.0, np.float32)
+    give(node, *responses(behind_wall, LEARNING), dead, dead)
+    return {"dead_responses": 2, "settling_responses": LEARNING}
+
+
+def is_deafened(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    put_in_force(node, {"full_scale_count": 1000.0})
+    loud = responses(behind_wall, 3)
+    assert all(np.count_nonzero(np.abs(response) >= 1000.0) > 2 for response in loud)
+    give(node, *loud)
+    return {"saturated_responses": 3}
+
+
+def loses_the_cross_talk(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    noise = np.random.default_rng(0).normal(0.0, 8.0, (2, 511)).astype(np.float32)
+    give(node, *responses(behind_wall, LEARNING), *noise)
+    return {"cross_talk_missing": 2, "settling_responses": LEARNING}
+
+
+def is_switched_on_anew(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    """Three responses in a row say so; the third is the first that is learnt anew."""
+    *before, one, other, third = responses(behind_wall, LEARNING + 3)
+    give(node, *before, *(np.roll(response, 100) for response in (one, other, third)))
+    return {"time_zero_moved": 1, "cross_talk_missing": 2, "settling_responses": LEARNING + 1}
+
+
+def sees_targets_everywhere(node: Machine, behind_wall: Recording) -> dict[str, int]:
+    registers: dict[str, object] = {
+        "gaussian_cfar.fast_factor": 1.0,
+        "gaussian_cfar.deviations": 0.01,
+        "target_traces.window_samples": 2,
+        "target_traces.least_hits": 1,
+    }
+    put_in_force(node, registers)
+    give(node, *responses(behind_wall, SETTLED + 2))
+    return {"truncated_detections": SOME}
+
+
+OF_A_NODE_BEHIND_A_WALL: dict[str, Provocation] = {
+    **dict.fromkeys(("responses", "settling_responses", "ticks_max"), takes_responses),
+    "rejected_responses": rejects_responses,
+    "dead_responses": hears_nothing,
+    "saturated_responses": is_deafened,
+    "cross_talk_missing": loses_the_cross_talk,
+    "time_zero_moved": is_switched_on_anew,
+    "truncated_detections": sees_targets_everywhere,
+}
+
+
 # What a hub of six nodes counts. Its deadline is 80 ms.
 
 NODES = [node.id for node in SITE.nodes]
@@ -333,7 +412,12 @@ OF_A_HUB: dict[str, Provocation] = {
     **dict.fromkeys(("dropped_measurements", "dropped_points", "dropped_births"), locates_too_much),
 }
 
-ROWS = {0: OF_A_NODE | OF_THE_LINK, 1: OF_A_HUB | OF_THE_LINK}
+NODE, HUB, NODE_BEHIND_A_WALL = range(3)
+ROWS = {
+    NODE: OF_A_NODE | OF_THE_LINK,
+    HUB: OF_A_HUB | OF_THE_LINK,
+    NODE_BEHIND_A_WALL: OF_A_NODE_BEHIND_A_WALL | OF_THE_LINK,
+}
 VALUES = [(kind, name) for kind, names in codec.HEALTH_VALUES.items() for name in names]
 
 
@@ -343,12 +427,16 @@ def target(request: pytest.FixtureRequest) -> str:
 
 
 def opened(kind: int, target: str, walk: Recording) -> Machine:
-    if kind == 1:
-        hub = Machine(open_board(target, "hub", "hub", HUB_ID), HUB_ID)
+    if kind == NODE_BEHIND_A_WALL:
+        node = Machine(open_board(target, "through_wall_node", "rx1", 1), 1)
+        node.configure(_core.ThroughWallNodeConfig(node_id=1))
+        return node
+    if kind == HUB:
+        hub = Machine(open_board(target, "sensor_radar_hub", "hub", HUB_ID), HUB_ID)
         hub.configure(hub_config(SITE))
         return hub
     source = walk.nodes[0]
-    node = Machine(open_board(target, "node", "rx1", source.node_id), source.node_id)
+    node = Machine(open_board(target, "sensor_radar_node", "rx1", source.node_id), source.node_id)
     place = places_of(SITE, walk.nodes)[source.node_id]
     node.configure(node_config(SITE, place, source))
     assert source.reference is not None
@@ -358,15 +446,16 @@ def opened(kind: int, target: str, walk: Recording) -> Machine:
 
 @pytest.mark.parametrize(("kind", "name"), VALUES)
 def test_every_value_moves_by_what_was_done(
-    kind: int, name: str, target: str, walk: Recording, injected: Ledger
+    kind: int, name: str, target: str, walk: Recording, behind_wall: Recording, injected: Ledger
 ) -> None:
-    machine = opened(kind, target, walk)
+    heard = behind_wall if kind == NODE_BEHIND_A_WALL else walk
+    machine = opened(kind, target, heard)
     with machine.board:
-        expected = ROWS[kind][name](machine, walk)
+        expected = ROWS[kind][name](machine, heard)
         machine.step(10_000_000)
         said = machine.health
         for key, count in expected.items():
             assert (said[key] > 0) if count == SOME else (said[key] == count), key
         trouble = {key: said[key] for key in expected if key in OF_TROUBLE}
-        injected("hub" if kind else "rx1", **trouble)
+        injected("hub" if kind == HUB else "rx1", **trouble)
         assert name in expected

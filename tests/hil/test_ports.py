@@ -78,7 +78,9 @@ class Place(NamedTuple):
 
 
 def started(link: str, role: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen([str(firmware_image("process", role)), "--node-id", str(NODE_ID), "--link", link])
+    return subprocess.Popen(
+        [str(firmware_image("process", f"sensor_radar_{role}")), "--node-id", str(NODE_ID), "--link", link]
+    )
 
 
 @contextmanager
@@ -165,7 +167,12 @@ def test_a_bare_cortex_m7_behind_its_uart(walk: Recording) -> None:
         number = free.getsockname()[1]
     command = ["qemu-system-arm", "-M", "mps2-an500", "-display", "none", "-monitor", "none"]
     command += ["-semihosting-config", "enable=on,target=native"]
-    command += ["-kernel", str(firmware_image("cortex-m7", "node")), "-append", f"--node-id {NODE_ID}"]
+    command += [
+        "-kernel",
+        str(firmware_image("cortex-m7", "sensor_radar_node")),
+        "-append",
+        f"--node-id {NODE_ID}",
+    ]
     command += ["-serial", f"tcp:127.0.0.1:{number},server=on,wait=off"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL) as emulator:
         try:

@@ -16,9 +16,11 @@ def documented(beginning: str, end: str) -> list[str]:
 
 
 def test_the_order_of_the_health_values() -> None:
-    link = documented("Then, for both", "## Registers")
-    assert documented("Kind 0", "Kind 1") + link == list(codec.HEALTH_VALUES[0])
-    assert documented("Kind 1", "Then, for both") + link == list(codec.HEALTH_VALUES[1])
+    link = "Then, for all"
+    after = [*(f"Kind {kind}" for kind in codec.HEALTH_VALUES), link]
+    for kind, values in codec.HEALTH_VALUES.items():
+        of_the_link = documented(link, "## Registers")
+        assert documented(f"Kind {kind}", after[kind + 1]) + of_the_link == list(values)
 
 
 def test_the_default_subjects() -> None:

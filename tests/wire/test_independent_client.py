@@ -110,7 +110,11 @@ def bus() -> Iterator[Bus]:
 @pytest.fixture(params=FIRMWARE_TARGETS)
 def radar(request: pytest.FixtureRequest, bus: Bus) -> Iterator[FirmwareRadar]:
     target = request.param
-    radar = FirmwareRadar(lambda *board: TappedBoard(open_board(target, *board), bus))  # type: ignore[arg-type]
+
+    def open_tapped(role: str, name: str, node_id: int) -> TappedBoard:
+        return TappedBoard(open_board(target, f"sensor_radar_{role}", name, node_id), bus)
+
+    radar = FirmwareRadar(open_tapped)  # type: ignore[arg-type]
     yield radar
     radar.close()
 

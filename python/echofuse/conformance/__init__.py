@@ -27,7 +27,7 @@ def conform(
     cases
         Of `CASES`.
     target
-        "inprocess", "process" or "cortex-m7"; "through-wall" on the first alone.
+        "inprocess", "process", "cortex-m7", or the address of a board.
     seeds
         How many simulated inputs; by default 20, and 3 on the Cortex-M7.
     recording

@@ -30,20 +30,20 @@ class FirmwareConformanceTarget:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self._open_board = BoardOpener(name)
-        self._free: dict[str, list[FirmwareUnderTest]] = {"node": [], "hub": []}
+        self._openers: dict[str, BoardOpener] = {}  # by pipeline
+        self._free: dict[tuple[str, str], list[FirmwareUnderTest]] = {}  # by pipeline and role
 
     def node(self, config: "_core.SensorRadarNodeConfig") -> NodeTarget:
         """See `ConformanceTarget`."""
-        return FirmwareNode(self, self._machine("node", config))
+        return FirmwareNode(self, self._machine("sensor_radar", "node", config))
 
     def through_wall_node(self, config: "_core.ThroughWallNodeConfig") -> ScanTarget:
-        """See `ConformanceTarget`; no board runs it."""
-        raise InputError(problem("conform", "through-wall", "target inprocess", self.name))
+        """See `ConformanceTarget`."""
+        return FirmwareNode(self, self._machine("through_wall_2d", "node", config))
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""
-        return FirmwareHub(self, self._machine("hub", config))
+        return FirmwareHub(self, self._machine("sensor_radar", "hub", config))
 
     def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
         """See `ConformanceTarget`; no board runs it."""
@@ -51,28 +51,34 @@ class FirmwareConformanceTarget:
 
     def give_back(self, machine: "FirmwareUnderTest") -> None:
         """Take a machine that has answered its input."""
-        self._free[machine.role].append(machine)
+        self._free[machine.pipeline, machine.role].append(machine)
 
     def close(self) -> None:
         """See `ConformanceTarget`."""
         for machines in self._free.values():
             while machines:
                 machines.pop().machine.board.close()
-        self._open_board.close()
+        for opener in self._openers.values():
+            opener.close()
 
-    def _machine(self, role: str, config: Any) -> "FirmwareUnderTest":
-        free = self._free[role]
-        machine = free.pop() if free else FirmwareUnderTest(self._open_board, role)
+    def _machine(self, pipeline: str, role: str, config: Any) -> "FirmwareUnderTest":
+        free = self._free.setdefault((pipeline, role), [])
+        machine = free.pop() if free else FirmwareUnderTest(self._opener(pipeline), pipeline, role)
         machine.configure(config)
         return machine
+
+    def _opener(self, pipeline: str) -> BoardOpener:
+        if pipeline not in self._openers:
+            self._openers[pipeline] = BoardOpener(self.name, pipeline)
+        return self._openers[pipeline]
 
 
 class FirmwareUnderTest:
     """A board, and how far its clock is ahead of an input's."""
 
-    def __init__(self, open_board: BoardOpener, role: str) -> None:
+    def __init__(self, open_board: BoardOpener, pipeline: str, role: str) -> None:
         node_id = open_board.free_id() if role == "node" else HUB_ID
-        self.role = role
+        self.pipeline, self.role = pipeline, role
         self.machine = Machine(open_board(role, role, node_id), node_id)
         self._begin_us = self._now_us = 0
 

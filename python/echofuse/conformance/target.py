@@ -79,7 +79,7 @@ class ConformanceTarget(Protocol):
         """Return a node configured and forgetful."""
 
     def through_wall_node(self, config: "_core.ThroughWallNodeConfig") -> ScanTarget:
-        """Return a receiver configured and forgetful; InputError where the target has none."""
+        """Return a receiver configured and forgetful."""
 
     def hub(self, config: "_core.SensorRadarHubConfig") -> HubTarget:
         """Return a hub configured and forgetful."""

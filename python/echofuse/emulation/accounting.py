@@ -6,7 +6,7 @@ Three laws, each exact (docs/emulation.md):
 2. Conservation. Of the frames that came intact to a running hub, each was taken or is a repetition. Of the
    reports that nodes made and a link doubled, each has one fate: lost, damaged or withheld on the way (in
    the log), unheard because there was no hub, a repetition, or in one of the hub's counters of outcomes. And
-   each node has counted as many scans as it made reports.
+   each node has counted as many scans or responses as it made reports.
 3. A counter of trouble that is not zero belongs to a kind of fault that was applied.
 """
 
@@ -120,8 +120,10 @@ def account(
     """
     hub = counters["hub"]
     rows = [CounterRow("hub", name, value, hub.get(name, 0)) for name, value in sorted(expected.items())]
-    rows += [CounterRow(node, "scans", count, counters[node].get("scans", 0)) for node, count in made.items()]
-    rows += [CounterRow(node, "rejected_scans", 0, counters[node].get("rejected_scans", 0)) for node in made]
+    for node, count in made.items():
+        taken = "responses" if "responses" in counters[node] else "scans"  # as its pipeline calls them
+        rows.append(CounterRow(node, taken, count, counters[node].get(taken, 0)))
+        rows.append(CounterRow(node, f"rejected_{taken}", 0, counters[node].get(f"rejected_{taken}", 0)))
     problems = [
         f"{row.machine}.{row.name}: expected {row.expected}, counted {row.counted}"
         for row in rows

@@ -1,4 +1,4 @@
-"""Cyphal/serial frames and the messages of a sensor radar, once more and from the specification alone.
+"""Cyphal/serial frames and our messages, once more and from the specification alone.
 
 It reads what the library writes and the other way round, so the two hold each other to the wire format
 (docs/link_protocol.md). 00 | COBS(24 bytes of header | payload | CRC-32C) | 00, one frame a transfer.
@@ -78,6 +78,18 @@ HEALTH_VALUES: dict[int, tuple[str, ...]] = {
         "dropped_births",
         "clock_faults",
         "undecodable",
+        "ticks_max",
+        *(f"link_{name}" for name in _LINK_COUNTERS),
+    ),
+    2: (
+        "responses",
+        "rejected_responses",
+        "dead_responses",
+        "saturated_responses",
+        "cross_talk_missing",
+        "settling_responses",
+        "time_zero_moved",
+        "truncated_detections",
         "ticks_max",
         *(f"link_{name}" for name in _LINK_COUNTERS),
     ),

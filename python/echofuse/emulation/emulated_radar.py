@@ -16,7 +16,7 @@ from echofuse.emulation import codec
 from echofuse.emulation.deadline import Processor
 from echofuse.emulation.firmware import FirmwareRadar
 from echofuse.emulation.image_size import image_size
-from echofuse.emulation.targets import BoardOpener, firmware_image
+from echofuse.emulation.targets import BoardOpener, firmware_image, image_name
 from echofuse.pipeline import SensorRadar, node_config
 from echofuse.recording import NodeRecording
 from echofuse.run_tables import FrameOutput, NodeOutput, Scan
@@ -68,12 +68,12 @@ class EmulatedRadar:
     def __init__(self, site: Site, sources: Sequence[NodeRecording], target: str) -> None:
         self._here = SensorRadar(site, sources)
         self._sources = tuple(sources)
-        self._target = target
+        self._target, self._pipeline = target, site.pipeline
         self.hub_config = self._here.hub_config
         self.agreement = Agreement()
         self._frames_here: deque[FrameOutput] = deque()
         self._frames_there: deque[tuple[int, NDArray[np.void]]] = deque()
-        self._open_board = BoardOpener(target)
+        self._open_board = BoardOpener(target, site.pipeline)
         self._there = FirmwareRadar(self._open_board)
         try:
             self._there.hub.configure(self.hub_config)
@@ -149,7 +149,7 @@ class EmulatedRadar:
             "hub": [self._there.hub.stack_bytes],
         }
         for role, prefix in (("node", ""), ("hub", "hub_")):
-            size = image_size(firmware_image(self._target, role))
+            size = image_size(firmware_image(self._target, image_name(self._pipeline, role)))
             found[f"{prefix}instructions_mean"] = (
                 float(instructions[role].mean()) if len(instructions[role]) else 0.0
             )

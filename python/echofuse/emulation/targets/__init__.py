@@ -3,7 +3,13 @@
 from collections.abc import Callable, Sequence
 
 from echofuse.emulation.machine import Target
-from echofuse.emulation.targets.boards import FIRMWARE_TARGETS, BoardOpener, firmware_image, open_board
+from echofuse.emulation.targets.boards import (
+    FIRMWARE_TARGETS,
+    BoardOpener,
+    firmware_image,
+    image_name,
+    open_board,
+)
 from echofuse.emulation.targets.port import is_port, port_url
 from echofuse.errors import InputError, problem
 from echofuse.recording import NodeRecording
@@ -14,6 +20,7 @@ __all__ = [
     "TARGETS",
     "BoardOpener",
     "firmware_image",
+    "image_name",
     "is_port",
     "open_board",
     "open_target",

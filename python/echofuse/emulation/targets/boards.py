@@ -12,31 +12,39 @@ from echofuse.errors import TargetError, problem
 AnyBoard = Board | PortBoard
 FIRMWARE_TARGETS = ("process", "cortex-m7")
 _SUFFIX = {"process": "", "cortex-m7": ".elf"}
+#: By a site's pipeline: what the names of its images, and what its boards call themselves, begin with.
+FAMILIES = {"sensor_radar": "sensor_radar", "through_wall_2d": "through_wall"}
 
 
-def firmware_image(target: str, role: str) -> Path:
-    """Return the image of a role, "node" or "hub": in the folder ECHOFUSE_FIRMWARE, or in the package."""
+def image_name(pipeline: str, role: str) -> str:
+    """Return the name of the image of a pipeline and a role, "node" or "hub"."""
+    return f"{FAMILIES[pipeline]}_{role}"
+
+
+def firmware_image(target: str, image: str) -> Path:
+    """Return the file of an image by its name: in the folder ECHOFUSE_FIRMWARE, or in the package."""
     named = os.environ.get("ECHOFUSE_FIRMWARE")
     folder = Path(named) if named else Path(__file__).parents[2] / "firmware"
-    image = folder / target / f"sensor_radar_{role}{_SUFFIX[target]}"
-    if not image.is_file():
+    file = folder / target / f"{image}{_SUFFIX[target]}"
+    if not file.is_file():
         hint = "make firmware" if target == "cortex-m7" else "make build"
-        raise TargetError(problem(image, "", f"a firmware image for the target {target} (`{hint}` makes it)"))
-    return image
+        raise TargetError(problem(file, "", f"a firmware image for the target {target} (`{hint}` makes it)"))
+    return file
 
 
 class BoardOpener:
     """Starts the boards of a target: of its kind, or at its addresses, with host processes for all others."""
 
-    def __init__(self, target: str) -> None:
+    def __init__(self, target: str, pipeline: str) -> None:
         """target: one of FIRMWARE_TARGETS, or addresses of boards with commas between them."""
         self.target = target
+        self._pipeline = pipeline
         self._kind = "process" if is_port(target) else target
         self._waiting: dict[int, PortBoard] = {}  # by node id
         self._taken: dict[int, PortBoard] = {}
         try:
             for address in target.split(",") if is_port(target) else ():
-                board = PortBoard(address)
+                board = PortBoard(address, f"echofuse.{FAMILIES[pipeline]}.node")
                 other = self._waiting.setdefault(board.node_id, board)
                 if other is not board:
                     board.close()
@@ -54,7 +62,7 @@ class BoardOpener:
             board = self._taken[node_id] = self._waiting.pop(node_id)
             board.name = f"{name} ({board.address})"
             return board
-        return open_board(self._kind, role, name, node_id)
+        return open_board(self._kind, image_name(self._pipeline, role), name, node_id)
 
     def free_id(self) -> int:
         """Return the id of a node that answers at an address and is not in use yet, or else one of nobody."""
@@ -76,12 +84,12 @@ class BoardOpener:
             self._waiting.popitem()[1].close()
 
 
-def open_board(target: str, role: str, name: str, node_id: int) -> Board:
-    """Start the firmware of `role` under a node id; the board waits for its first step."""
+def open_board(target: str, image: str, name: str, node_id: int) -> Board:
+    """Start an image, such as "sensor_radar_node", under a node id; the board waits for its first step."""
     if target not in FIRMWARE_TARGETS:
         raise TargetError(f"target {target}: expected one of {', '.join(FIRMWARE_TARGETS)}")
-    image = firmware_image(target, role)
-    command = _process(image, node_id) if target == "process" else _cortex_m7(image, node_id)
+    file = firmware_image(target, image)
+    command = _process(file, node_id) if target == "process" else _cortex_m7(file, node_id)
     return Board(f"{name} ({target})", command)
 
 

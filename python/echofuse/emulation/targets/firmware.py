@@ -20,7 +20,7 @@ class FirmwareTarget:
         self.name = name
         self._site, self._sources = site, tuple(sources)
         self._places = places_of(site, sources)
-        self._open_board = BoardOpener(name)
+        self._open_board = BoardOpener(name, site.pipeline)
 
     def open_node(self, index: int) -> Machine:
         """Start a node, write its configuration, and show it the empty room."""

@@ -26,7 +26,6 @@ IDENTIFY_S = 5.0  # a heartbeat comes every second
 ANSWER_S, TRIES = 5.0, 3  # a raw scan takes 0.7 s at 115,200 bit/s
 _TAP = struct.Struct("<BIHH")  # tap, scan, offset, size; then the count of values and they
 _SCHEMES = ("tcp://", "serial:")
-NODE_NAME = "echofuse.sensor_radar.node"
 
 
 def is_port(target: str) -> bool:
@@ -56,7 +55,8 @@ def port_url(address: str) -> str:
 class PortBoard:
     """The board at an address: a node, by its heartbeat and by what it calls itself."""
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, node_name: str) -> None:
+        """node_name: what the board has to call itself, such as "echofuse.sensor_radar.node"."""
         import serial
 
         url = port_url(address)
@@ -70,7 +70,7 @@ class PortBoard:
         except (serial.SerialException, OSError, ValueError) as error:
             raise BoardError(f"{address}: cannot be opened: {_reason(error)}") from None
         try:
-            self.node_id = self._identified()
+            self.node_id = self._identified(node_name)
             self._raw_scan_port = int(self._register("uavcan.sub.raw_scan.id"))
         except BaseException:
             self._line.close()
@@ -140,7 +140,7 @@ class PortBoard:
     ) -> None:
         self.close()
 
-    def _identified(self) -> int:
+    def _identified(self, node_name: str) -> int:
         """Wait for a heartbeat, and ask whose it is."""
         deadline = time.monotonic() + IDENTIFY_S
         while time.monotonic() < deadline:
@@ -148,8 +148,8 @@ class PortBoard:
                 if transfer.port == codec.HEARTBEAT and transfer.kind == codec.MESSAGE:
                     self.node_id = transfer.source
                     name = codec.parse_name(self._ask(codec.GET_INFO, b"", "its name"))
-                    if name != NODE_NAME:
-                        raise BoardError(f"{self.name}: expected {NODE_NAME}, and it calls itself {name}")
+                    if name != node_name:
+                        raise BoardError(f"{self.name}: expected {node_name}, and it calls itself {name}")
                     return transfer.source
         raise BoardError(f"{self.name}: nobody there: no heartbeat for {IDENTIFY_S:g} s{self._noise()}")
 
