@@ -1,12 +1,13 @@
-/// The hub of the pipeline sensor_radar: the nodes' reports in, tracks out. The same source on every board.
+/// A hub: the nodes' reports in, tracks out. The same source for every pipeline (hub_pipelines.hpp) and on every board.
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "board.hpp"
-#include "echofuse/hub/hub.hpp"
-#include "echofuse/hub/registers.hpp"
+#include "hub_pipelines.hpp"
 #include "machine.hpp"
 
 #ifdef ECHOFUSE_SITE_CONFIG
@@ -25,17 +26,19 @@ constexpr link::RegisterField kCommandRegisters[] = {
 constexpr std::size_t kFrameBytes = link::kFrameHeaderBytes + link::kFrameCrcBytes + kMaxPayloadBytes;
 constexpr std::int64_t kSynchronizationPeriod_us = 1000000;
 
+template <class Pipeline>
 class HubFirmware {
  public:
-  static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarHub;
+  static constexpr link::MachineKind kKind = Pipeline::kKind;
 
   Machine& machine() { return machine_; }
 
   void start() {
-#ifdef ECHOFUSE_SITE_CONFIG
-    staged_ = site::hub_config();
+#ifdef ECHOFUSE_SITE_CONFIG  // of another pipeline: this image has to be told over the link
+    if constexpr (std::is_same_v<decltype(site::hub_config()), typename Pipeline::Config>)
+      staged_ = site::hub_config();
 #endif
-    machine_.add_registers(hub::config_registers(), &staged_);
+    machine_.add_registers(Pipeline::registers(), &staged_);
     machine_.add_registers(kCommandRegisters, &machine_.commands);
   }
 
@@ -59,28 +62,7 @@ class HubFirmware {
 
   bool healthy() const { return hub_.counters().reports.malformed == 0; }
 
-  std::array<std::uint32_t, 19> counters() const {
-    const hub::SensorRadarHubCounters c = hub_.counters();
-    return {c.reports.accepted,
-            c.reports.late,
-            c.reports.early,
-            c.reports.doubled,
-            c.reports.malformed,
-            c.reports.unknown_node,
-            c.reports.lost,
-            c.reports.resynchronised,
-            c.reports.frames,
-            c.reports.absent,
-            c.reports.slow,
-            static_cast<std::uint32_t>(c.selection.tuples),
-            static_cast<std::uint32_t>(c.selection.dropped_tuples),
-            static_cast<std::uint32_t>(c.selection.dropped_detections),
-            static_cast<std::uint32_t>(c.selection.dropped_measurements),
-            static_cast<std::uint32_t>(c.dropped_points),
-            c.dropped_births,
-            c.clock_faults,
-            undecodable_};
-  }
+  auto counters() const { return Pipeline::counted(hub_.counters(), undecodable_); }
 
  private:
   void close_frames(std::int64_t now_us) {
@@ -106,9 +88,9 @@ class HubFirmware {
   }
 
   std::array<std::uint8_t, kFrameBytes> frame_{};
-  Machine machine_{frame_, "echofuse.sensor_radar.hub"};
-  hub::SensorRadarHubConfig staged_;
-  hub::SensorRadarHub hub_;
+  Machine machine_{frame_, Pipeline::kName};
+  typename Pipeline::Config staged_;
+  typename Pipeline::Hub hub_;
   link::Detections report_;
   link::Tracks tracks_;
   std::int64_t synchronized_us_ = 0;
@@ -116,7 +98,7 @@ class HubFirmware {
   std::uint32_t undecodable_ = 0;
 };
 
-HubFirmware firmware;
+HubFirmware<hub_pipelines::ECHOFUSE_PIPELINE> firmware;
 
 }  // namespace
 }  // namespace echofuse::firmware

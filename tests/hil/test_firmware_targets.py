@@ -24,6 +24,7 @@ from echofuse.recording import Recording
 from echofuse.site import example_site
 
 SITE = example_site("sensor_radar")
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -159,9 +160,17 @@ def test_a_missing_image_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         firmware_image("cortex-m7", "sensor_radar_node")
 
 
+def includes(*folders: Path) -> list[str]:
+    return [
+        *(f"-I{folder}" for folder in (ROOT / "cpp/include", *folders)),
+        "-isystem",
+        "/usr/include/eigen3",
+    ]
+
+
 def test_an_exported_site_compiles_and_is_the_site(tmp_path: Path) -> None:
     header = tmp_path / "site_config.hpp"
-    site = Path(__file__).parents[2] / "python/echofuse/sites/sensor_radar_several.toml"
+    site = ROOT / "python/echofuse/sites/sensor_radar_several.toml"
     assert main(["export-config", str(site), "--out", str(header)]) == 0
     program = """
       #include "site_config.hpp"
@@ -171,9 +180,28 @@ def test_an_exported_site_compiles_and_is_the_site(tmp_path: Path) -> None:
         if (c.node_id != 4 || c.cfar.global_factor != 4.0f) return 2;
         return c.clutter.method == echofuse::node::ClutterMethod::kEmptyRoomShadowed ? 0 : 3;
       }"""
-    root = Path(__file__).parents[2]
     binary = tmp_path / "check"
-    include = [f"-I{root / 'cpp/include'}", f"-I{tmp_path}", "-isystem", "/usr/include/eigen3"]
-    command = ["g++", "-std=c++17", *include, "-x", "c++", "-", "-o", str(binary)]
+    command = ["g++", "-std=c++17", *includes(tmp_path), "-x", "c++", "-", "-o", str(binary)]
     subprocess.run(command, input=program, text=True, check=True, capture_output=True)
     assert subprocess.run([binary], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("role", "pipeline"), [("node", "SensorRadar"), ("node", "ThroughWall"), ("hub", "SensorRadar")]
+)
+def test_every_firmware_compiles_with_a_site_and_takes_that_of_its_own_pipeline(
+    role: str, pipeline: str, tmp_path: Path
+) -> None:
+    """A build makes all images with one site: those of other pipelines have none compiled in."""
+    header = tmp_path / "site_config.hpp"
+    site = ROOT / "python/echofuse/sites/sensor_radar_several.toml"
+    assert main(["export-config", str(site), "--out", str(header)]) == 0
+    compiled = tmp_path / "firmware.o"
+    command = ["g++", "-std=c++17", "-O0", "-c", *includes(tmp_path, ROOT / "firmware_sim")]
+    command += ['-DECHOFUSE_SITE_CONFIG="site_config.hpp"', f"-DECHOFUSE_PIPELINE={pipeline}"]
+    source = ROOT / f"firmware_sim/{role}_firmware.cpp"
+    subprocess.run([*command, str(source), "-o", str(compiled)], check=True, capture_output=True)
+    called = (
+        f"{role}_config".encode() in compiled.read_bytes()
+    )  # an inline function is there if somebody calls it
+    assert called == (pipeline == "SensorRadar")

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "echofuse/core/span.hpp"
+#include "echofuse/hub/hub.hpp"
+#include "echofuse/hub/registers.hpp"
+#include "echofuse/link/messages.hpp"
+#include "echofuse/link/register_server.hpp"
+
+/// What the firmware of a hub has to know of its pipeline. An image is of one of them, which CMake names (ECHOFUSE_PIPELINE).
+namespace echofuse::firmware::hub_pipelines {
+
+struct SensorRadar {
+  using Hub = hub::SensorRadarHub;
+  using Config = hub::SensorRadarHubConfig;
+  static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarHub;
+  static constexpr const char* kName = "echofuse.sensor_radar.hub";
+
+  static Span<const link::RegisterField> registers() { return hub::config_registers(); }
+
+  /// In the order of docs/link_protocol.md. undecodable: of the firmware itself.
+  static std::array<std::uint32_t, 19> counted(const hub::SensorRadarHubCounters& c,
+                                               std::uint32_t undecodable) {
+    return {c.reports.accepted,
+            c.reports.late,
+            c.reports.early,
+            c.reports.doubled,
+            c.reports.malformed,
+            c.reports.unknown_node,
+            c.reports.lost,
+            c.reports.resynchronised,
+            c.reports.frames,
+            c.reports.absent,
+            c.reports.slow,
+            static_cast<std::uint32_t>(c.selection.tuples),
+            static_cast<std::uint32_t>(c.selection.dropped_tuples),
+            static_cast<std::uint32_t>(c.selection.dropped_detections),
+            static_cast<std::uint32_t>(c.selection.dropped_measurements),
+            static_cast<std::uint32_t>(c.dropped_points),
+            c.dropped_births,
+            c.clock_faults,
+            undecodable};
+  }
+};
+
+}  // namespace echofuse::firmware::hub_pipelines
