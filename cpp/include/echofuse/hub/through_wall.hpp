@@ -44,7 +44,7 @@ struct ThroughWallHubCounters {
   std::uint32_t couples = 0;
   std::uint32_t unlocated = 0;             ///< their paths meet nowhere
   std::uint32_t outside_area = 0;          ///< or not in the room
-  std::uint32_t dropped_points = 0;        ///< couples beyond kMaxPointsPerFrame
+  std::uint32_t dropped_points = 0;        ///< frames with more couples than points; some left out
   std::uint32_t dropped_births = 0;        ///< tracks that could not begin
   std::uint32_t dropped_combinations = 0;  ///< searches of a track that were cut short
   std::uint32_t clock_faults = 0;          ///< frames that were not later than the one before

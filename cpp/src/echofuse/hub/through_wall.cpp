@@ -144,6 +144,7 @@ Status ThroughWallHub::pair(BoundedVector<TraceCouple>& couples) {
   free_delays(last_, last);
   const Status status = trace_pairing_.process(first.span(), last.span(), couples);
   counted_.couples += static_cast<std::uint32_t>(couples.size());
+  if (status == Status::kTruncated) ++counted_.dropped_points;
   return status;
 }
 
@@ -172,10 +173,8 @@ Status ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
     return Status::kOk;
   }
   const auto n_paths = static_cast<int>(std::count(weight_.begin(), weight_.end(), 1.0f));
-  const bool room = points_.try_push_back({fix.position, n_paths, least_weight_});
-  if (!room) ++counted_.dropped_points;
-  const Status begun = config_.track_aided ? path_tracker_.begin(fix) : Status::kOk;
-  return room ? begun : Status::kTruncated;
+  ECHOFUSE_CHECK(points_.try_push_back({fix.position, n_paths, least_weight_}));  // as many as couples
+  return config_.track_aided ? path_tracker_.begin(fix) : Status::kOk;
 }
 
 LineFix ThroughWallHub::locate_paths() {
