@@ -210,6 +210,9 @@ void bind_link(py::module_& m) {
   m.def(
       "hub_registers", [] { return register_names(hub::config_registers()); },
       "Names of a hub's configuration on the link; '#' stands for the index of a node.");
+  m.def(
+      "through_wall_hub_registers", [] { return register_names(hub::through_wall_registers()); },
+      "Names of a hub's configuration on the link; '#' stands for the index of a node.");
 }
 
 }  // namespace echofuse::bindings

@@ -6,6 +6,7 @@
 #include "echofuse/core/span.hpp"
 #include "echofuse/hub/hub.hpp"
 #include "echofuse/hub/registers.hpp"
+#include "echofuse/hub/through_wall.hpp"
 #include "echofuse/link/messages.hpp"
 #include "echofuse/link/register_server.hpp"
 
@@ -41,6 +42,27 @@ struct SensorRadar {
             static_cast<std::uint32_t>(c.dropped_points),
             c.dropped_births,
             c.clock_faults,
+            undecodable};
+  }
+};
+
+struct ThroughWall {
+  using Hub = hub::ThroughWallHub;
+  using Config = hub::ThroughWallHubConfig;
+  static constexpr link::MachineKind kKind = link::MachineKind::kThroughWallHub;
+  static constexpr const char* kName = "echofuse.through_wall.hub";
+
+  static Span<const link::RegisterField> registers() { return hub::through_wall_registers(); }
+
+  /// In the order of docs/link_protocol.md. undecodable: of the firmware itself.
+  static std::array<std::uint32_t, 19> counted(const hub::ThroughWallHubCounters& c,
+                                               std::uint32_t undecodable) {
+    return {c.reports.accepted, c.reports.late,           c.reports.early,
+            c.reports.doubled,  c.reports.malformed,      c.reports.unknown_node,
+            c.reports.lost,     c.reports.resynchronised, c.reports.frames,
+            c.reports.absent,   c.reports.slow,           c.couples,
+            c.unlocated,        c.outside_area,           c.dropped_points,
+            c.dropped_births,   c.dropped_combinations,   c.clock_faults,
             undecodable};
   }
 };

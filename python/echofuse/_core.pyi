@@ -146,6 +146,7 @@ __all__: list[str] = [
     "snr_on_ellipse",
     "sum_on_cassini_m",
     "systematic_resample",
+    "through_wall_hub_registers",
     "through_wall_node_registers",
     "time_of_arrival_s",
     "two_ellipses",
@@ -4746,6 +4747,11 @@ def systematic_resample(
 ) -> tuple[Status, numpy.typing.NDArray[numpy.uint16]]:
     """
     (status, indices (n_out,)).
+    """
+
+def through_wall_hub_registers() -> list[str]:
+    """
+    Names of a hub's configuration on the link; '#' stands for the index of a node.
     """
 
 def through_wall_node_registers() -> list[str]:

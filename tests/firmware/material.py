@@ -64,13 +64,40 @@ def sensor_radar_node() -> NodeFeed:
     return NodeFeed(node_config(SITE, place, source), source)
 
 
-def through_wall_node() -> NodeFeed:
-    """Return the configuration and the responses of the case study's first receiver."""
-    source = through_wall_case_study().nodes[0]
+def through_wall_node_config(source: NodeRecording) -> Any:
+    """Return the configuration of a receiver of the case study."""
     config = _core.ThroughWallNodeConfig(node_id=source.node_id, n_samples=source.scans.shape[1])
     config.sample_rate_hz = source.sample_rate_hz
     config.baseline_m = float(np.linalg.norm(source.rx_position_m - source.tx_position_m))
-    return NodeFeed(config, source, RESPONSE_PERIOD_US)
+    config.max_delay_s = 41.7e-9
+    config.target_traces.window_samples, config.target_traces.least_hits = 8, 4
+    return config
+
+
+def through_wall_node() -> NodeFeed:
+    """Return the configuration and the responses of the case study's first receiver."""
+    source = through_wall_case_study().nodes[0]
+    return NodeFeed(through_wall_node_config(source), source, RESPONSE_PERIOD_US)
+
+
+def through_wall_hub() -> HubFeed:
+    """Return what the case study's two receivers report."""
+    sources = through_wall_case_study().nodes
+    config = _core.ThroughWallHubConfig()
+    positions = [[getattr(source, f"{end}_position_m")[:2] for source in sources] for end in ("tx", "rx")]
+    config.set_nodes([source.node_id for source in sources], *(np.float32(of_all) for of_all in positions))
+    config.set_area(-2.35, 0.48, 2.35, 6.10)
+    frames = [b""] * len(sources[0].scans)
+    for source in sources:
+        node = _core.ThroughWallNode()
+        if node.configure(through_wall_node_config(source)) != _core.Status.ok:
+            raise RuntimeError(f"{source.name}: refuses its configuration")
+        for index, response in enumerate(source.scans):
+            _, found = node.process(np.ascontiguousarray(response, np.float32), index * RESPONSE_PERIOD_US)
+            frames[index] += _report(
+                source.node_id, index, found["delay_s"], found["weight"], RESPONSE_PERIOD_US
+            )
+    return HubFeed(config, frames, RESPONSE_PERIOD_US)
 
 
 def sensor_radar_hub() -> HubFeed:
@@ -108,6 +135,26 @@ def crowd(n_nodes: int, n_people: int, n_frames: int = 12) -> HubFeed:
     return feed
 
 
-def _report(node_id: int, frame: int, delay_s: Any, weight: Any) -> bytes:
-    payload = codec.detections_payload((frame + 1) * PERIOD_US, delay_s, weight)
+def traces_at_random(n_receivers: int, n_frames: int = 12) -> HubFeed:
+    """Receivers on a line before the wall, whose reports are full of anything."""
+    random = np.random.default_rng(5)
+    rx_m = np.zeros((n_receivers, 2), np.float32)
+    rx_m[:, 0] = np.delete(
+        np.linspace(-0.4, 0.4, n_receivers + 1), n_receivers // 2
+    )  # the transmitter's place
+    config = _core.ThroughWallHubConfig()
+    config.set_nodes(list(range(1, n_receivers + 1)), np.zeros_like(rx_m), rx_m)
+    config.set_area(-2.35, 0.48, 2.35, 6.10)
+    feed = HubFeed(config, [], RESPONSE_PERIOD_US)
+    for frame in range(n_frames):
+        reports = b""
+        for node in range(n_receivers):
+            delays_s = np.sort(random.uniform(1.2e-8, 4e-8, 16))
+            reports += _report(node + 1, frame, delays_s, np.full(16, 9), RESPONSE_PERIOD_US)
+        feed.frames.append(reports)
+    return feed
+
+
+def _report(node_id: int, frame: int, delay_s: Any, weight: Any, period_us: int = PERIOD_US) -> bytes:
+    payload = codec.detections_payload((frame + 1) * period_us, delay_s, weight)
     return codec.frame(Transfer(node_id, codec.DETECTIONS, frame, payload))

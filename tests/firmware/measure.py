@@ -5,11 +5,11 @@ python tests/firmware/measure.py --update   and into budgets.toml
 """
 
 import argparse
-import re
 import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,13 @@ from material import (
     crowd,
     sensor_radar_hub,
     sensor_radar_node,
+    through_wall_hub,
     through_wall_node,
+    traces_at_random,
 )
 from static_stack import deepest, functions
 
+from echofuse import _core
 from echofuse.emulation.firmware import HUB_ID, Machine
 from echofuse.emulation.image_size import image_size
 from echofuse.emulation.lockstep import PROFILE_TOTAL
@@ -41,8 +44,12 @@ FEEDS: dict[str, Callable[[], NodeFeed | HubFeed]] = {
     "sensor_radar_node": sensor_radar_node,
     "sensor_radar_hub": sensor_radar_hub,
     "through_wall_node": through_wall_node,
+    "through_wall_hub": through_wall_hub,
 }
-WORST: dict[str, Callable[[], NodeFeed | HubFeed]] = {"sensor_radar_hub": lambda: crowd(16, 16)}
+WORST: dict[str, Callable[[], NodeFeed | HubFeed]] = {
+    "sensor_radar_hub": lambda: crowd(16, 16),
+    "through_wall_hub": lambda: traces_at_random(2),
+}
 
 Figures = dict[str, int]
 
@@ -84,13 +91,7 @@ def run_hub(image: str, feed: HubFeed) -> Machine:
     return hub
 
 
-def stage_names() -> dict[int, str]:
-    """Return the taps' names by their numbers, as `core/tap.hpp` gives them."""
-    header = (HERE.parents[1] / "cpp/include/echofuse/core/tap.hpp").read_text()
-    found = re.findall(r"^  k(\w+) = (\d+),", header, re.MULTILINE)
-    return {int(number): re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name, number in found}
-
-
+@cache
 def measure(name: str) -> Figures:
     """Return all figures of an image."""
     image = firmware_image("cortex-m7", name)
@@ -105,15 +106,19 @@ def measure(name: str) -> Figures:
         "instructions_mean": round(np.mean(totals)),
         "instructions_max": max(totals),
     }
-    names = stage_names()
     stages = dict.fromkeys(tap for profile in machine.profiles for tap in profile if tap != PROFILE_TOTAL)
     for tap in stages:  # in the order in which they run
         counts = [profile[tap] for profile in machine.profiles if tap in profile]
-        figures[f"instructions_of_{names[tap]}"] = round(np.mean(counts))
+        figures[f"instructions_of_{_core.TAPS[tap][0]}"] = round(np.mean(counts))
     if name in WORST:
         worst = run(name, WORST[name]())
         figures["instructions_worst_case"] = max(profile[PROFILE_TOTAL] for profile in worst.profiles)
     return figures
+
+
+def instructions_together(hub: str, asked: dict[str, Any]) -> int:
+    """Return the longest that nodes and hub take from raw samples to tracks, one after the other."""
+    return asked["nodes"] * measure(asked["node"])["instructions_max"] + measure(hub)["instructions_max"]
 
 
 def heap_symbols(image: Path) -> list[str]:
@@ -136,6 +141,9 @@ def main() -> int:
         for name, value in figures.items():
             asked = entry["at_most"].get(name)
             print(f"| {name.replace('_', ' ')} | {'' if asked is None else f'<= {asked:,}'} | {value:,} |")
+    for hub, asked in limits()["together"].items():
+        most = instructions_together(hub, asked)
+        print(f"\n{hub} and {asked['nodes']} of {asked['node']}: {most:,}, <= {asked['instructions_max']:,}")
     if options.update:
         BUDGETS.write_text("\n".join(lines) + "\n")
     return 0

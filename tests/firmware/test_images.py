@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from measure import BUDGETS, FEEDS, TOLERANCE, heap_symbols, limits, measure, run
+from measure import BUDGETS, FEEDS, TOLERANCE, heap_symbols, instructions_together, limits, measure, run
 from static_stack import Function, compilers_frames, deepest, functions, plain_name
 
 from echofuse.emulation.image_size import image_size
@@ -81,6 +81,11 @@ def test_an_image_keeps_its_budgets(entry: dict[str, Any]) -> None:
         if name not in budgets or abs(value - budgets[name]) > TOLERANCE * budgets[name]
     }
     assert off == {}, "budget and measured figure; `make budgets` records what is meant"
+
+
+@pytest.mark.parametrize(("hub", "asked"), limits()["together"].items())
+def test_from_raw_samples_to_tracks_nodes_and_hub_keep_their_budget(hub: str, asked: dict[str, Any]) -> None:
+    assert instructions_together(hub, asked) <= asked["instructions_max"]
 
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)

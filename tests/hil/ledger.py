@@ -32,7 +32,10 @@ OF_TROUBLE = {
         "cross_talk_missing",
         "time_zero_moved",
     ),
-    *("dropped_tuples", "dropped_detections", "dropped_measurements", "dropped_points", "dropped_births"),
+    *(
+        f"dropped_{what}"
+        for what in ("tuples", "detections", "measurements", "points", "births", "combinations")
+    ),
     *(f"link_{name}" for name in (*REJECTED, "repeated", "unsent", "refused_writes")),
 }
 

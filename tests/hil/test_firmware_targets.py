@@ -187,7 +187,8 @@ def test_an_exported_site_compiles_and_is_the_site(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("role", "pipeline"), [("node", "SensorRadar"), ("node", "ThroughWall"), ("hub", "SensorRadar")]
+    ("role", "pipeline"),
+    [("node", "SensorRadar"), ("node", "ThroughWall"), ("hub", "SensorRadar"), ("hub", "ThroughWall")],
 )
 def test_every_firmware_compiles_with_a_site_and_takes_that_of_its_own_pipeline(
     role: str, pipeline: str, tmp_path: Path

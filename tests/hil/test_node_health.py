@@ -270,10 +270,15 @@ OF_A_NODE_BEHIND_A_WALL: dict[str, Provocation] = {
 }
 
 
-# What a hub of six nodes counts. Its deadline is 80 ms.
+# What a hub counts of what it hears, from six nodes around a room or two before a wall. Its deadline: 80 ms.
 
-NODES = [node.id for node in SITE.nodes]
 FRAME_US = 100_000
+
+
+def listed(hub: Machine) -> list[int]:
+    """The ids of the nodes that a hub knows."""
+    config = hub.config
+    return [node.node_id for node in config.nodes[: config.n_nodes]]
 
 
 def report(
@@ -285,55 +290,54 @@ def report(
     return frame(Transfer(node, codec.DETECTIONS, number, payload))
 
 
-def reports(number: int, nodes: Sequence[int] = NODES, **fields: object) -> bytes:
+def reports(nodes: Sequence[int], number: int, **fields: object) -> bytes:
     return b"".join(report(node, number, **fields) for node in nodes)  # type: ignore[arg-type]
 
 
-def hear(hub: Machine, *numbers: int, nodes: Sequence[int] = NODES) -> None:
+def hear(hub: Machine, nodes: Sequence[int], *numbers: int, **fields: object) -> None:
     """Frames that come on time, each to its end."""
     for number in numbers:
-        hub.step(FRAME_US * number, reports(number, nodes))
+        hub.step(FRAME_US * number, reports(nodes, number, **fields))
         hub.step(FRAME_US * number + 90_000)
 
 
 def takes_reports(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, 1, 2, 3)
-    return {
-        "accepted": 18,
-        "frames": 3,
-        "tuples": 3 * 20,
-        "ticks_max": SOME,
-    }  # 20 ways to take three nodes of six
+    nodes = listed(hub)
+    hear(hub, nodes, 1, 2, 3)
+    return {"accepted": 3 * len(nodes), "frames": 3, "ticks_max": SOME}
 
 
 def hears_one_late(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, 1)
-    hear(hub, 2, nodes=NODES[:5])
-    hub.step(FRAME_US * 2 + 95_000, report(NODES[5], 2))
+    *others, last = listed(hub)
+    hear(hub, [*others, last], 1)
+    hear(hub, others, 2)
+    hub.step(FRAME_US * 2 + 95_000, report(last, 2))
     return {"late": 1, "lost": 1}
 
 
 def hears_one_early(hub: Machine, _: Recording) -> dict[str, int]:
-    """At 50 frames a second: frame 4 still waits for the sixth node when the first speaks of frame 7."""
+    """At 50 frames a second: frame 4 still waits for the last node when the first speaks of frame 7."""
+    *others, last = listed(hub)
     for number in (1, 2, 3):
-        hub.step(20_000 * number, reports(number, scan_us=20_000 * number))
-    hub.step(80_000, reports(4, NODES[:5], scan_us=80_000))
-    hub.step(140_000, report(NODES[0], 7, scan_us=140_000))
+        hub.step(20_000 * number, reports([*others, last], number, scan_us=20_000 * number))
+    hub.step(80_000, reports(others, 4, scan_us=80_000))
+    hub.step(140_000, report(others[0], 7, scan_us=140_000))
     return {"early": 1, "lost": 1}
 
 
 def hears_one_twice(hub: Machine, _: Recording) -> dict[str, int]:
     """A scan of the same instant under another number."""
-    hear(hub, 1)
-    hub.step(
-        FRAME_US * 2, report(NODES[0], 2) + report(NODES[0], 3, scan_us=FRAME_US * 2) + reports(2, NODES[1:])
-    )
+    first, *others = listed(hub)
+    hear(hub, [first, *others], 1)
+    twice = report(first, 2) + report(first, 3, scan_us=FRAME_US * 2)
+    hub.step(FRAME_US * 2, twice + reports(others, 2))
     hub.step(FRAME_US * 2 + 90_000)
     return {"doubled": 1}
 
 
 def hears_nonsense(hub: Machine, _: Recording) -> dict[str, int]:
-    hub.step(FRAME_US, report(NODES[0], 1, delay_s=(2e-6,)) + report(NODES[1], 1, delay_s=(3e-8, 2e-8)))
+    first, second, *_others = listed(hub)
+    hub.step(FRAME_US, report(first, 1, delay_s=(2e-6,)) + report(second, 1, delay_s=(3e-8, 2e-8)))
     return {"malformed": 2}
 
 
@@ -343,33 +347,59 @@ def hears_strangers(hub: Machine, _: Recording) -> dict[str, int]:
 
 
 def misses_one(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, *range(1, 13), nodes=NODES[:5])
+    hear(hub, listed(hub)[:-1], *range(1, 13))
     return {"lost": 10, "absent": 2}  # after ten frames nobody waits for it
 
 
 def hears_one_count_anew(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, 5, 6)
-    hub.step(FRAME_US * 7, reports(7, NODES[:5]) + report(NODES[5], 0, scan_us=FRAME_US * 7))
+    *others, last = listed(hub)
+    hear(hub, [*others, last], 5, 6)
+    hub.step(FRAME_US * 7, reports(others, 7) + report(last, 0, scan_us=FRAME_US * 7))
     hub.step(FRAME_US * 7 + 90_000)
     return {"resynchronised": 1}
 
 
 def hears_one_slowly(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, 1)
-    hub.step(FRAME_US * 2, reports(2, NODES[:5]))
-    hub.step(FRAME_US * 2 + 50_000, report(NODES[5], 2))
+    *others, last = listed(hub)
+    hear(hub, [*others, last], 1)
+    hub.step(FRAME_US * 2, reports(others, 2))
+    hub.step(FRAME_US * 2 + 50_000, report(last, 2))
     return {"slow": 1}
 
 
 def hears_two_frames_at_once(hub: Machine, _: Recording) -> dict[str, int]:
-    hear(hub, 1, 2)
-    hub.step(FRAME_US * 4, reports(3) + reports(4))
+    nodes = listed(hub)
+    hear(hub, nodes, 1, 2)
+    hub.step(FRAME_US * 4, reports(nodes, 3) + reports(nodes, 4))
     return {"clock_faults": 1}
 
 
 def cannot_read(hub: Machine, _: Recording) -> dict[str, int]:
-    hub.step(FRAME_US, frame(Transfer(NODES[0], codec.DETECTIONS, 1, b"\1\2\3")))
+    hub.step(FRAME_US, frame(Transfer(listed(hub)[0], codec.DETECTIONS, 1, b"\1\2\3")))
     return {"undecodable": 1}
+
+
+OF_ANY_HUB: dict[str, Provocation] = {
+    **dict.fromkeys(("accepted", "frames", "ticks_max"), takes_reports),
+    "late": hears_one_late,
+    "early": hears_one_early,
+    "doubled": hears_one_twice,
+    "malformed": hears_nonsense,
+    "unknown_node": hears_strangers,
+    **dict.fromkeys(("lost", "absent"), misses_one),
+    "resynchronised": hears_one_count_anew,
+    "slow": hears_one_slowly,
+    "clock_faults": hears_two_frames_at_once,
+    "undecodable": cannot_read,
+}
+
+
+# And what a hub around a room does with them.
+
+
+def tries_all_tuples(hub: Machine, _: Recording) -> dict[str, int]:
+    hear(hub, listed(hub), 1, 2, 3)
+    return {"tuples": 3 * 20}  # 20 ways to take three nodes of six
 
 
 MANY = tuple(np.linspace(1.5e-8, 6e-8, 16))
@@ -377,7 +407,7 @@ MANY = tuple(np.linspace(1.5e-8, 6e-8, 16))
 
 def hears_everything(hub: Machine, _: Recording) -> dict[str, int]:
     """Sixteen echoes at each of six nodes: 17^6 ways to take them."""
-    hub.step(FRAME_US, reports(1, delay_s=MANY))
+    hub.step(FRAME_US, reports(listed(hub), 1, delay_s=MANY))
     return {"dropped_tuples": SOME, "dropped_detections": SOME, "dropped_measurements": 0}
 
 
@@ -391,32 +421,89 @@ def locates_too_much(hub: Machine, _: Recording) -> dict[str, int]:
         "tracks.birth_exclusion_m": 0.0,
     }
     put_in_force(hub, registers)
-    hub.step(FRAME_US, reports(1, delay_s=MANY))
+    hub.step(FRAME_US, reports(listed(hub), 1, delay_s=MANY))
     dropped = ("tuples", "detections", "measurements", "points", "births")
     return {f"dropped_{name}": SOME for name in dropped}
 
 
 OF_A_HUB: dict[str, Provocation] = {
-    **dict.fromkeys(("accepted", "frames", "tuples", "ticks_max"), takes_reports),
-    "late": hears_one_late,
-    "early": hears_one_early,
-    "doubled": hears_one_twice,
-    "malformed": hears_nonsense,
-    "unknown_node": hears_strangers,
-    **dict.fromkeys(("lost", "absent"), misses_one),
-    "resynchronised": hears_one_count_anew,
-    "slow": hears_one_slowly,
-    "clock_faults": hears_two_frames_at_once,
-    "undecodable": cannot_read,
+    **OF_ANY_HUB,
+    "tuples": tries_all_tuples,
     **dict.fromkeys(("dropped_tuples", "dropped_detections"), hears_everything),
     **dict.fromkeys(("dropped_measurements", "dropped_points", "dropped_births"), locates_too_much),
 }
 
-NODE, HUB, NODE_BEHIND_A_WALL = range(3)
+
+# And one behind a wall, of two receivers 0.8 m apart.
+
+
+def before_a_wall(*rx_x_m: float) -> "_core.ThroughWallHubConfig":
+    """Receivers beside their transmitter, and the room of the case study."""
+    config, n = _core.ThroughWallHubConfig(), len(rx_x_m)
+    rx_m = np.column_stack([rx_x_m, np.zeros(n)]).astype(np.float32)
+    config.set_nodes(list(range(1, n + 1)), np.zeros((n, 2), np.float32), rx_m)
+    config.set_area(-2.35, 0.48, 2.35, 6.1)
+    return config
+
+
+def pairs_traces(hub: Machine, _: Recording) -> dict[str, int]:
+    """The first is a person's, whose track takes the others."""
+    hear(hub, listed(hub), 1, 2, 3)
+    return {"couples": 1}
+
+
+def cannot_locate(hub: Machine, _: Recording) -> dict[str, int]:
+    """Paths that differ by 0.9 m, which the pairing allows."""
+    first, second = listed(hub)
+    hub.step(FRAME_US, report(first, 1, delay_s=(2e-8,)) + report(second, 1, delay_s=(2.3e-8,)))
+    return {"couples": 1, "unlocated": 1}
+
+
+def locates_beyond_the_room(hub: Machine, _: Recording) -> dict[str, int]:
+    hear(hub, listed(hub), 1, delay_s=(4.3e-8,))
+    return {"couples": 1, "outside_area": 1}
+
+
+def has_room_for_one(hub: Machine, _: Recording) -> dict[str, int]:
+    put_in_force(hub, {"path_tracker.max_tracks": 1})
+    hear(hub, listed(hub), 1, delay_s=(1.5e-8, 2.5e-8, 3.5e-8))
+    return {"couples": 3, "dropped_births": 2}
+
+
+CLOSE = tuple(np.linspace(1.9e-8, 2e-8, 16))
+
+
+def pairs_everything(hub: Machine, _: Recording) -> dict[str, int]:
+    """Sixteen traces of each receiver, any of which may be any other's: 256 couples."""
+    put_in_force(hub, {"trace_pairing.rule": _core.PairingRule.all_pairs, "track_aided": False})
+    hear(hub, listed(hub), 1, delay_s=CLOSE)
+    return {"dropped_points": SOME}
+
+
+def searches_among_too_many(hub: Machine, _: Recording) -> dict[str, int]:
+    """Eight receivers with sixteen traces each, and a track that all are near to: 17^8 combinations."""
+    hub.configure(before_a_wall(-0.8, -0.6, -0.4, -0.2, 0.2, 0.4, 0.6, 0.8))
+    hear(hub, listed(hub), 1, delay_s=CLOSE[-1:])
+    hear(hub, listed(hub), 2, delay_s=CLOSE)
+    return {"dropped_combinations": SOME}
+
+
+OF_A_HUB_BEHIND_A_WALL: dict[str, Provocation] = {
+    **OF_ANY_HUB,
+    "couples": pairs_traces,
+    "unlocated": cannot_locate,
+    "outside_area": locates_beyond_the_room,
+    "dropped_births": has_room_for_one,
+    "dropped_points": pairs_everything,
+    "dropped_combinations": searches_among_too_many,
+}
+
+NODE, HUB, NODE_BEHIND_A_WALL, HUB_BEHIND_A_WALL = range(4)
 ROWS = {
     NODE: OF_A_NODE | OF_THE_LINK,
     HUB: OF_A_HUB | OF_THE_LINK,
     NODE_BEHIND_A_WALL: OF_A_NODE_BEHIND_A_WALL | OF_THE_LINK,
+    HUB_BEHIND_A_WALL: OF_A_HUB_BEHIND_A_WALL | OF_THE_LINK,
 }
 VALUES = [(kind, name) for kind, names in codec.HEALTH_VALUES.items() for name in names]
 
@@ -431,6 +518,10 @@ def opened(kind: int, target: str, walk: Recording) -> Machine:
         node = Machine(open_board(target, "through_wall_node", "rx1", 1), 1)
         node.configure(_core.ThroughWallNodeConfig(node_id=1))
         return node
+    if kind == HUB_BEHIND_A_WALL:
+        hub = Machine(open_board(target, "through_wall_hub", "hub", HUB_ID), HUB_ID)
+        hub.configure(before_a_wall(-0.4, 0.4))
+        return hub
     if kind == HUB:
         hub = Machine(open_board(target, "sensor_radar_hub", "hub", HUB_ID), HUB_ID)
         hub.configure(hub_config(SITE))
@@ -457,5 +548,5 @@ def test_every_value_moves_by_what_was_done(
         for key, count in expected.items():
             assert (said[key] > 0) if count == SOME else (said[key] == count), key
         trouble = {key: said[key] for key in expected if key in OF_TROUBLE}
-        injected("hub" if kind == HUB else "rx1", **trouble)
+        injected("hub" if kind in (HUB, HUB_BEHIND_A_WALL) else "rx1", **trouble)
         assert name in expected

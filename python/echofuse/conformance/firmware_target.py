@@ -20,7 +20,6 @@ from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID, Machine
 from echofuse.emulation.machine import named_taps
 from echofuse.emulation.targets import BoardOpener
-from echofuse.errors import InputError, problem
 
 PAUSE_US = 10_000_000  # between two inputs, longer than any link remembers a transfer
 
@@ -46,8 +45,8 @@ class FirmwareConformanceTarget:
         return FirmwareHub(self, self._machine("sensor_radar", "hub", config))
 
     def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
-        """See `ConformanceTarget`; no board runs it."""
-        raise InputError(problem("conform", "through-wall", "target inprocess", self.name))
+        """See `ConformanceTarget`."""
+        return FirmwareHub(self, self._machine("through_wall_2d", "hub", config))
 
     def give_back(self, machine: "FirmwareUnderTest") -> None:
         """Take a machine that has answered its input."""

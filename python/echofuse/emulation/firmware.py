@@ -33,7 +33,7 @@ class Machine:
         self.stack_bytes = 0
         self._reader = FrameReader()
         self._requests: Counter[int] = Counter()
-        self._config: object = None  # that is in force
+        self.config: Any = None  # that is in force
 
     def step(
         self,
@@ -72,7 +72,7 @@ class Machine:
 
     def configure(self, config: Any) -> None:
         """Write every member that differs from what is in force, put them there, and see that they are."""
-        before = self._config if isinstance(self._config, type(config)) else type(config)()
+        before = self.config if isinstance(self.config, type(config)) else type(config)()
         for name, value in _differences(config, before):
             said = self.write_register(name, value)
             if said is None or not np.isclose(float(said), float(value), rtol=1e-6):  # type: ignore[arg-type]
@@ -82,7 +82,7 @@ class Machine:
             self.step(CONFIG_STEP_US)
         if self.read_register("echofuse.apply") is not True:
             raise TargetError(f"{self.board.name}: refuses the site's configuration")
-        self._config = deepcopy(config)
+        self.config = deepcopy(config)
 
     def show_empty_room(self, scans: Sequence[NDArray[Any]]) -> None:
         """Give a node its scans of the empty room, (n_scans, n_samples), and see that it has taken them.

@@ -8,4 +8,7 @@ namespace echofuse::hub {
 /// The members of SensorRadarHubConfig as registers, each under its name in a site file, and of each node.
 Span<const link::RegisterField> config_registers();
 
+/// The members of ThroughWallHubConfig, likewise.
+Span<const link::RegisterField> through_wall_registers();
+
 }  // namespace echofuse::hub

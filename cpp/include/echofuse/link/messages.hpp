@@ -48,6 +48,7 @@ enum class MachineKind : std::uint8_t {
   kSensorRadarNode = 0,
   kSensorRadarHub = 1,
   kThroughWallNode = 2,
+  kThroughWallHub = 3,
 };
 
 /// What a machine has counted since its start; the order of a kind's values stands in docs/link_protocol.md.

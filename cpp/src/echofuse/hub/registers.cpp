@@ -1,32 +1,49 @@
 #include "echofuse/hub/registers.hpp"
 
 #include <cstddef>
+#include <tuple>
 #include <utility>
 
 #include "echofuse/hub/hub.hpp"
+#include "echofuse/hub/through_wall.hpp"
 
 namespace echofuse::hub {
 namespace {
 
-#define FIELD(member) ECHOFUSE_REGISTER(SensorRadarHubConfig, member)
-
-/// A member of NodeSite, in each of the configuration's nodes.
+/// A member of NodeSite, in each of a configuration's nodes.
+template <class Config>
 constexpr link::RegisterField of_each_node(link::RegisterField field) {
-  field.offset = static_cast<std::uint16_t>(field.offset + offsetof(SensorRadarHubConfig, nodes));
-  field.repeat = static_cast<std::uint8_t>(kMaxNodes);
+  field.offset = static_cast<std::uint16_t>(field.offset + offsetof(Config, nodes));
+  field.repeat = static_cast<std::uint8_t>(std::tuple_size_v<decltype(Config::nodes)>);
   field.stride = sizeof(NodeSite);
   return field;
 }
 
-constexpr link::RegisterField kFields[] = {
-    FIELD(n_nodes),
-    FIELD(frame_period_s),
+// What stands in more than one table.
+#define NODE_FIELD(Config, member) \
+  of_each_node<Config>(ECHOFUSE_REGISTER_AS(NodeSite, member, "nodes.#." #member))
+#define SITE_FIELDS(Config)                                                                           \
+  FIELD(n_nodes), FIELD(area.min_x_m), FIELD(area.min_y_m), FIELD(area.max_x_m), FIELD(area.max_y_m), \
+      NODE_FIELD(Config, node_id), NODE_FIELD(Config, tx.x_m), NODE_FIELD(Config, tx.y_m),            \
+      NODE_FIELD(Config, rx.x_m), NODE_FIELD(Config, rx.y_m)
+#define FRAME_FIELDS                                                                                   \
+  FIELD(frame_period_s), FIELD(frame_assembler.deadline_us), FIELD(frame_assembler.dead_after_frames), \
+      FIELD(frame_assembler.resync_after_reports), FIELD(frame_assembler.max_delay_s)
+#define TRACK_FIELDS                                                                                   \
+  FIELD(tracks.association), FIELD(tracks.update), FIELD(tracks.gate_m), FIELD(tracks.cost_max_m),     \
+      FIELD(tracks.gate_sigma), FIELD(tracks.silent_gate_growth_mps), FIELD(tracks.silent_gate_max_m), \
+      FIELD(tracks.birth_exclusion_m), FIELD(tracks.confirm_updates), FIELD(tracks.silent_time_min_s), \
+      FIELD(tracks.silent_time_per_confirmed), FIELD(tracks.silent_time_max_s),                        \
+      FIELD(tracks.silent_velocity_time_s), FIELD(tracks.acceleration_density_m2ps3),                  \
+      FIELD(tracks.measurement_std_m), FIELD(tracks.velocity_std_mps)
+
+#define FIELD(member) ECHOFUSE_REGISTER(SensorRadarHubConfig, member)
+
+constexpr link::RegisterField kSensorRadarFields[] = {
+    SITE_FIELDS(SensorRadarHubConfig),
+    FRAME_FIELDS,
     FIELD(aid_missed_frames),
     FIELD(tracker),
-    FIELD(frame_assembler.deadline_us),
-    FIELD(frame_assembler.dead_after_frames),
-    FIELD(frame_assembler.resync_after_reports),
-    FIELD(frame_assembler.max_delay_s),
     FIELD(ellipse.refinement),
     FIELD(ellipse.max_iterations),
     FIELD(ellipse.max_step_m),
@@ -70,22 +87,7 @@ constexpr link::RegisterField kFields[] = {
     FIELD(em.background_density_per_m2),
     FIELD(em.max_iterations),
     FIELD(em.tolerance_m),
-    FIELD(tracks.association),
-    FIELD(tracks.update),
-    FIELD(tracks.gate_m),
-    FIELD(tracks.cost_max_m),
-    FIELD(tracks.gate_sigma),
-    FIELD(tracks.silent_gate_growth_mps),
-    FIELD(tracks.silent_gate_max_m),
-    FIELD(tracks.birth_exclusion_m),
-    FIELD(tracks.confirm_updates),
-    FIELD(tracks.silent_time_min_s),
-    FIELD(tracks.silent_time_per_confirmed),
-    FIELD(tracks.silent_time_max_s),
-    FIELD(tracks.silent_velocity_time_s),
-    FIELD(tracks.acceleration_density_m2ps3),
-    FIELD(tracks.measurement_std_m),
-    FIELD(tracks.velocity_std_mps),
+    TRACK_FIELDS,
     FIELD(ranges.detection_probability),
     FIELD(ranges.far_detection_probability),
     FIELD(ranges.shadowed_detection_probability),
@@ -123,21 +125,56 @@ constexpr link::RegisterField kFields[] = {
     FIELD(ranges.birth_score),
     FIELD(ranges.max_births),
     FIELD(ranges.birth_exclusion_m),
-    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.min_x_m),
-    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.min_y_m),
-    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.max_x_m),
-    ECHOFUSE_REGISTER(SensorRadarHubConfig, area.max_y_m),
-    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, node_id, "nodes.#.node_id")),
-    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, tx.x_m, "nodes.#.tx.x_m")),
-    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, tx.y_m, "nodes.#.tx.y_m")),
-    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, rx.x_m, "nodes.#.rx.x_m")),
-    of_each_node(ECHOFUSE_REGISTER_AS(NodeSite, rx.y_m, "nodes.#.rx.y_m")),
 };
 
 #undef FIELD
+#define FIELD(member) ECHOFUSE_REGISTER(ThroughWallHubConfig, member)
+
+constexpr link::RegisterField kThroughWallFields[] = {
+    SITE_FIELDS(ThroughWallHubConfig),
+    FRAME_FIELDS,
+    FIELD(body_radius_m),
+    FIELD(track_aided),
+    FIELD(trace_pairing.rule),
+    FIELD(trace_pairing.closing),
+    FIELD(trace_pairing.separation_m),
+    FIELD(trace_pairing.clock_hz),
+    FIELD(trace_pairing.correction_samples),
+    FIELD(trace_pairing.completion_limit),
+    FIELD(line_locator.wall.thickness_m),
+    FIELD(line_locator.wall.relative_permittivity),
+    FIELD(line_locator.wall.compensation),
+    FIELD(line_locator.path_std_m),
+    FIELD(path_tracker.acceleration_density_m2ps3),
+    FIELD(path_tracker.velocity_std_mps),
+    FIELD(path_tracker.path_std_m),
+    FIELD(path_tracker.common_path_std_m),
+    FIELD(path_tracker.gate),
+    FIELD(path_tracker.missing_cost),
+    FIELD(path_tracker.lone_gate),
+    FIELD(path_tracker.lone_limit),
+    FIELD(path_tracker.cut_off),
+    FIELD(path_tracker.confirm_updates),
+    FIELD(path_tracker.confirm_window),
+    FIELD(path_tracker.silent_time_s),
+    FIELD(path_tracker.silent_velocity_time_s),
+    FIELD(path_tracker.birth_exclusion_m),
+    FIELD(path_tracker.merge_distance_m),
+    FIELD(path_tracker.merge_speed_mps),
+    FIELD(path_tracker.max_tracks),
+    TRACK_FIELDS,
+};
+
+#undef FIELD
+#undef TRACK_FIELDS
+#undef FRAME_FIELDS
+#undef SITE_FIELDS
+#undef NODE_FIELD
 
 }  // namespace
 
-Span<const link::RegisterField> config_registers() { return kFields; }
+Span<const link::RegisterField> config_registers() { return kSensorRadarFields; }
+
+Span<const link::RegisterField> through_wall_registers() { return kThroughWallFields; }
 
 }  // namespace echofuse::hub
