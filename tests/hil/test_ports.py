@@ -77,14 +77,14 @@ class Place(NamedTuple):
     board: subprocess.Popen[bytes]
 
 
-def started(link: str, role: str) -> subprocess.Popen[bytes]:
+def started(link: str, image: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen(
-        [str(firmware_image("process", f"sensor_radar_{role}")), "--node-id", str(NODE_ID), "--link", link]
+        [str(firmware_image("process", image)), "--node-id", str(NODE_ID), "--link", link]
     )
 
 
 @contextmanager
-def behind_tcp(role: str = "node") -> Iterator[Place]:
+def behind_tcp(image: str = "sensor_radar_node") -> Iterator[Place]:
     """The board joins one socket and the harness another, as at a terminal server."""
     with ExitStack() as stack:
         servers = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(2)]
@@ -96,7 +96,7 @@ def behind_tcp(role: str = "node") -> Iterator[Place]:
             board, harness = (stack.enter_context(server.accept()[0]) for server in servers)
             return board.fileno(), harness.fileno()
 
-        board = started(f"tcp:127.0.0.1:{inner}", role)
+        board = started(f"tcp:127.0.0.1:{inner}", image)
         wire = Wire(ends)
         try:
             yield Place(f"tcp://127.0.0.1:{outer}", wire, board)
@@ -107,12 +107,12 @@ def behind_tcp(role: str = "node") -> Iterator[Place]:
 
 
 @contextmanager
-def behind_serial(role: str = "node") -> Iterator[Place]:
+def behind_serial(image: str = "sensor_radar_node") -> Iterator[Place]:
     """A line of two pseudo-terminals."""
     (near, board_side), (far, harness_side) = pty.openpty(), pty.openpty()
     tty.setraw(board_side)
     tty.setraw(harness_side)
-    board = started(f"serial:{os.ttyname(board_side)}", role)
+    board = started(f"serial:{os.ttyname(board_side)}", image)
     wire = Wire(lambda: (near, far))
     try:
         yield Place(f"serial:{os.ttyname(harness_side)}@921600", wire, board)
@@ -240,7 +240,7 @@ def test_a_board_that_ends_is_named(walk: Recording) -> None:
 @pytest.mark.usefixtures("impatient")
 def test_a_hub_is_no_node(walk: Recording) -> None:
     with (
-        behind_tcp("hub") as place,
+        behind_tcp("sensor_radar_hub") as place,
         pytest.raises(TargetError, match=r"calls itself echofuse.sensor_radar.hub"),
     ):
         process_recording(walk, SITE, target=place.address)
