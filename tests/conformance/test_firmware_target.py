@@ -10,13 +10,20 @@ import numpy as np
 import pytest
 
 from echofuse.cli import main
-from echofuse.conformance.choices import NODE_CHOICES, THROUGH_WALL_NODE_CHOICES, Choice
+from echofuse.conformance.choices import (
+    NODE_CHOICES,
+    THROUGH_WALL_HUB_CHOICES,
+    THROUGH_WALL_NODE_CHOICES,
+    Choice,
+)
 from echofuse.conformance.comparison import Row, Scoreboard
 from echofuse.conformance.firmware_target import FirmwareConformanceTarget
 from echofuse.conformance.hub_inputs import simulated_hub_inputs
 from echofuse.conformance.hub_taps import conform_hub
 from echofuse.conformance.inputs import simulated_inputs
 from echofuse.conformance.node_taps import conform_node
+from echofuse.conformance.through_wall_hub_inputs import simulated_through_wall_reports
+from echofuse.conformance.through_wall_hub_taps import conform_through_wall_hub
 from echofuse.conformance.through_wall_inputs import simulated_responses
 from echofuse.conformance.through_wall_taps import conform_through_wall_node
 
@@ -43,6 +50,8 @@ def test_one_board_takes_one_choice_after_the_other(target: FirmwareConformanceT
         conform_hub(board, choice, target, list(simulated_hub_inputs(1)))
     for choice in THROUGH_WALL_NODE_CHOICES[:4]:
         conform_through_wall_node(board, choice, target, list(simulated_responses(2)))
+    for choice in THROUGH_WALL_HUB_CHOICES[:4]:
+        conform_through_wall_hub(board, choice, target, list(simulated_through_wall_reports(2)))
     assert [row.failures for row in board.rows() if row.failures] == []
 
 
@@ -106,8 +115,21 @@ def test_a_receiver_that_is_configured_otherwise_fails_there(register: str, valu
     assert tap in [row.tap for row in failed(board)]
 
 
+@pytest.mark.parametrize(
+    ("register", "value", "tap"),
+    [("line_locator.wall.thickness_m", 0.2, "points"), ("path_tracker.cut_off", 1.6, "tracks")],
+)
+def test_a_hub_behind_a_wall_that_is_configured_otherwise_fails_there(
+    register: str, value: object, tap: str
+) -> None:
+    board = Scoreboard()
+    with closing(OtherwiseConfigured("hub", register, value)) as target:
+        conform_through_wall_hub(board, DEFAULT, target, list(simulated_through_wall_reports(2)))
+    assert tap in [row.tap for row in failed(board)]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("case", "rows"), [("sensor-radar", 436), ("through-wall", 130)])
+@pytest.mark.parametrize(("case", "rows"), [("sensor-radar", 436), ("through-wall", 178)])
 @pytest.mark.parametrize("name", ["process", "cortex-m7"])
 def test_every_tap_of_every_choice_agrees(name: str, case: str, rows: int, tmp_path: Path) -> None:
     assert main(["conform", case, "--target", name, "--seeds", "2", "--out", str(tmp_path)]) == 0

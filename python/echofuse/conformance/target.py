@@ -85,7 +85,7 @@ class ConformanceTarget(Protocol):
         """Return a hub configured and forgetful."""
 
     def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
-        """Return a hub of receivers configured and forgetful; InputError where the target has none."""
+        """Return a hub of receivers configured and forgetful."""
 
     def close(self) -> None:
         """End all machines."""

@@ -28,9 +28,8 @@ class ThroughWallPlan:
 
 def steps(target: ConformanceTarget, plan: ThroughWallPlan, scores: Scores) -> Iterator[None]:
     """Compare in `plan.steps()` steps; what is found goes into `scores`."""
-    target.through_wall_node(
-        _core.ThroughWallNodeConfig()
-    ).close()  # an image or a board that is missing: said first
+    # An image or a board that is missing is told before a minute of simulation.
+    target.through_wall_node(_core.ThroughWallNodeConfig()).close()
     inputs = list(simulated_responses(plan.seeds))
     for choice in plan.node_choices:
         conform_through_wall_node(scores.board("through-wall node"), choice, target, inputs)
