@@ -125,9 +125,6 @@ def export_config(options: Namespace) -> int:
     from echofuse.site.cpp_header import cpp_header
 
     site = load_site(options.site)
-    if site.pipeline != "sensor_radar":
-        expected = "sensor_radar: firmware of another pipeline is told its configuration over the link"
-        raise InputError(problem(options.site, "pipeline.name", expected, site.pipeline))
     recorded = read(options.recording).nodes if options.recording else ()
     sources = {source.node_id: source for source in recorded}
     configs = {

@@ -17,9 +17,9 @@ from echofuse.simulation.scene import sensor_radar_scene
 from echofuse.simulation.sensor_radar import case_study_people, simulate
 from echofuse.simulation.through_wall import simulate_through_wall
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
-from echofuse.site import example_site
+from echofuse.site import Site, example_site
 
-SITE = example_site("sensor_radar")
+SITE, BEFORE_A_WALL = example_site("sensor_radar"), example_site("through_wall")
 PERIOD_US = 100_000
 RESPONSE_PERIOD_US = 74_000
 THROUGH_WALL_S = 9.0  # in which both people walk, meet and turn
@@ -58,58 +58,41 @@ def through_wall_case_study() -> Recording:
 
 
 def sensor_radar_node() -> NodeFeed:
-    """Return the configuration and the scans of the case study's first node."""
-    source = case_study().nodes[0]
-    (place,) = (place for place in SITE.nodes if place.id == source.node_id)
-    return NodeFeed(node_config(SITE, place, source), source)
-
-
-def through_wall_node_config(source: NodeRecording) -> Any:
-    """Return the configuration of a receiver of the case study."""
-    config = _core.ThroughWallNodeConfig(node_id=source.node_id, n_samples=source.scans.shape[1])
-    config.sample_rate_hz = source.sample_rate_hz
-    config.baseline_m = float(np.linalg.norm(source.rx_position_m - source.tx_position_m))
-    config.max_delay_s = 41.7e-9
-    config.target_traces.window_samples, config.target_traces.least_hits = 8, 4
-    return config
-
-
-def through_wall_node() -> NodeFeed:
-    """Return the configuration and the responses of the case study's first receiver."""
-    source = through_wall_case_study().nodes[0]
-    return NodeFeed(through_wall_node_config(source), source, RESPONSE_PERIOD_US)
-
-
-def through_wall_hub() -> HubFeed:
-    """Return what the case study's two receivers report."""
-    sources = through_wall_case_study().nodes
-    config = _core.ThroughWallHubConfig()
-    positions = [[getattr(source, f"{end}_position_m")[:2] for source in sources] for end in ("tx", "rx")]
-    config.set_nodes([source.node_id for source in sources], *(np.float32(of_all) for of_all in positions))
-    config.set_area(-2.35, 0.48, 2.35, 6.10)
-    frames = [b""] * len(sources[0].scans)
-    for source in sources:
-        node = _core.ThroughWallNode()
-        if node.configure(through_wall_node_config(source)) != _core.Status.ok:
-            raise RuntimeError(f"{source.name}: refuses its configuration")
-        for index, response in enumerate(source.scans):
-            _, found = node.process(np.ascontiguousarray(response, np.float32), index * RESPONSE_PERIOD_US)
-            frames[index] += _report(
-                source.node_id, index, found["delay_s"], found["weight"], RESPONSE_PERIOD_US
-            )
-    return HubFeed(config, frames, RESPONSE_PERIOD_US)
+    """Return the case study's first node."""
+    return _first_node(SITE, case_study(), PERIOD_US)
 
 
 def sensor_radar_hub() -> HubFeed:
     """Return what the case study's nodes report."""
-    nodes = case_study().nodes
-    radar = SensorRadar(SITE, nodes)
+    return _reports(SITE, case_study(), PERIOD_US)
+
+
+def through_wall_node() -> NodeFeed:
+    """Return the case study's first receiver."""
+    return _first_node(BEFORE_A_WALL, through_wall_case_study(), RESPONSE_PERIOD_US)
+
+
+def through_wall_hub() -> HubFeed:
+    """Return what the case study's two receivers report."""
+    return _reports(BEFORE_A_WALL, through_wall_case_study(), RESPONSE_PERIOD_US)
+
+
+def _first_node(site: Site, recording: Recording, period_us: int) -> NodeFeed:
+    source = recording.nodes[0]
+    (place,) = (place for place in site.nodes if place.id == source.node_id)
+    return NodeFeed(node_config(site, place, source), source, period_us)
+
+
+def _reports(site: Site, recording: Recording, period_us: int) -> HubFeed:
+    radar = SensorRadar(site, recording.nodes)
     frames: dict[int, bytes] = defaultdict(bytes)
-    for scan in scans_in_time_order(nodes):
-        source = nodes[scan.node]
+    for scan in scans_in_time_order(recording.nodes):
+        source = recording.nodes[scan.node]
         found = radar.scan(scan, source.scans[scan.index]).detections
-        frames[scan.index] += _report(source.node_id, scan.index, found["delay_s"], found["weight"])
-    return HubFeed(hub_config(SITE), list(frames.values()))
+        frames[scan.index] += _report(
+            source.node_id, scan.index, found["delay_s"], found["weight"], period_us
+        )
+    return HubFeed(hub_config(site), list(frames.values()), period_us)
 
 
 def crowd(n_nodes: int, n_people: int, n_frames: int = 12) -> HubFeed:

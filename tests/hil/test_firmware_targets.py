@@ -186,23 +186,21 @@ def test_an_exported_site_compiles_and_is_the_site(tmp_path: Path) -> None:
     assert subprocess.run([binary], check=False).returncode == 0
 
 
+@pytest.mark.parametrize("pipeline", ["SensorRadar", "ThroughWall"])
+@pytest.mark.parametrize("role", ["node", "hub"])
 @pytest.mark.parametrize(
-    ("role", "pipeline"),
-    [("node", "SensorRadar"), ("node", "ThroughWall"), ("hub", "SensorRadar"), ("hub", "ThroughWall")],
+    ("site", "of"), [("sensor_radar_several", "SensorRadar"), ("through_wall", "ThroughWall")]
 )
 def test_every_firmware_compiles_with_a_site_and_takes_that_of_its_own_pipeline(
-    role: str, pipeline: str, tmp_path: Path
+    site: str, of: str, role: str, pipeline: str, tmp_path: Path
 ) -> None:
     """A build makes all images with one site: those of other pipelines have none compiled in."""
-    header = tmp_path / "site_config.hpp"
-    site = ROOT / "python/echofuse/sites/sensor_radar_several.toml"
-    assert main(["export-config", str(site), "--out", str(header)]) == 0
-    compiled = tmp_path / "firmware.o"
+    header, compiled = tmp_path / "site_config.hpp", tmp_path / "firmware.o"
+    file = ROOT / f"python/echofuse/sites/{site}.toml"
+    assert main(["export-config", str(file), "--out", str(header)]) == 0
     command = ["g++", "-std=c++17", "-O0", "-c", *includes(tmp_path, ROOT / "firmware_sim")]
     command += ['-DECHOFUSE_SITE_CONFIG="site_config.hpp"', f"-DECHOFUSE_PIPELINE={pipeline}"]
     source = ROOT / f"firmware_sim/{role}_firmware.cpp"
     subprocess.run([*command, str(source), "-o", str(compiled)], check=True, capture_output=True)
-    called = (
-        f"{role}_config".encode() in compiled.read_bytes()
-    )  # an inline function is there if somebody calls it
-    assert called == (pipeline == "SensorRadar")
+    # An inline function is there if somebody calls it.
+    assert (f"{role}_config".encode() in compiled.read_bytes()) == (pipeline == of)

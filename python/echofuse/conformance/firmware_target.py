@@ -1,6 +1,5 @@
 """Firmware beside the reference: configured by registers, its taps by the board's trace."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,10 @@ from echofuse.conformance.target import (
     Report,
     Scan,
     ScanTarget,
-    Taps,
 )
 from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID, Machine
-from echofuse.emulation.machine import named_taps
+from echofuse.emulation.machine import by_frame, named_taps
 from echofuse.emulation.targets import BoardOpener
 
 PAUSE_US = 10_000_000  # between two inputs, longer than any link remembers a transfer
@@ -152,21 +150,9 @@ class FirmwareHub:
 
     def _step(self, now_us: int, link: bytes) -> None:
         shown, messages = self._board.step(now_us, link)
-        frames = _by_frame(shown)
+        frames = by_frame(shown)
         for transfer in messages:
             if transfer.port == codec.TRACKS:
                 time_us, frame, tracks = codec.parse_tracks(transfer.payload)
                 taps = next(frames, {})
                 self._answers.append(HubAnswer(self._board.input_us(time_us), frame, tracks, taps))
-
-
-def _by_frame(shown: list[tuple[str, Any]]) -> Iterator[Taps]:
-    """Yield the taps of each frame that was closed; "frame" is the first of them."""
-    taps: Taps = {}
-    for name, values in shown:
-        if name == "frame" and taps:
-            yield taps
-            taps = {}
-        taps[name] = values
-    if taps:
-        yield taps

@@ -127,7 +127,7 @@ class EmulatedRadar:
             for name in rows.dtype.names or ():
                 tracks[name] = rows[name]
             self.agreement.add_frame(here.tracks, tracks)
-            yield FrameOutput(time_us=time_us, points=here.points, tracks=tracks)
+            yield FrameOutput(time_us=time_us, points=here.points, tracks=tracks, taps=here.taps)
 
     def counters(self) -> dict[str, dict[str, int]]:
         """Return what the machines say that they have counted, by name; the firmware's."""

@@ -1,6 +1,6 @@
 """What the emulation needs of a machine, whatever it runs on: bytes in, bytes out, one step at a time."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
@@ -9,7 +9,19 @@ from numpy.typing import NDArray
 
 from echofuse import _core
 
-__all__ = ["Machine", "ScanInput", "StepOutput", "Target", "named_taps"]
+__all__ = ["Machine", "ScanInput", "StepOutput", "Target", "by_frame", "named_taps"]
+
+
+def by_frame(taps: Iterable[tuple[str, NDArray[np.float32]]]) -> Iterator[dict[str, NDArray[np.float32]]]:
+    """Yield the taps of each frame that a hub has closed; "frame" is the first of them."""
+    frame: dict[str, NDArray[np.float32]] = {}
+    for name, values in taps:
+        if name == "frame" and frame:
+            yield frame
+            frame = {}
+        frame[name] = values
+    if frame:
+        yield frame
 
 
 def named_taps(taps: Iterable[tuple[int, NDArray[np.float32]]]) -> list[tuple[str, NDArray[np.float32]]]:

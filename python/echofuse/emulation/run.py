@@ -11,7 +11,7 @@ from echofuse.emulation.accounting import Account, account
 from echofuse.emulation.clock import VirtualClock
 from echofuse.emulation.injection import Effect, InjectionLog
 from echofuse.emulation.link import Link
-from echofuse.emulation.machine import ScanInput, StepOutput, Target
+from echofuse.emulation.machine import ScanInput, StepOutput, Target, by_frame
 from echofuse.emulation.monitor import HubMonitor
 from echofuse.emulation.radar import RadarEvent, digitised, schedule, start_us
 from echofuse.emulation.reception import Receiver
@@ -258,12 +258,13 @@ class _Run:
         self._monitor.step(now_us, data)
         output = self._hub.machine.step(now_us, data, taps=True)
         self._hub.keep_profile(output)
-        points = [values for name, values in output.taps if name == "points"]
+        taps = by_frame(output.taps)
         for transfer in self._from_hub.feed(output.link_out, now_us):
             if transfer.kind == codec.MESSAGE and transfer.port == codec.TRACKS:
                 time_us, _, tracks = codec.parse_tracks(transfer.payload)
-                seen = points.pop(0) if points else np.zeros((0, 4), np.float32)
-                frame = FrameOutput(time_us=time_us, points=seen.reshape(-1, 4), tracks=tracks)
+                shown = next(taps, {})
+                points = shown.get("points", np.zeros((0, 4), np.float32))
+                frame = FrameOutput(time_us=time_us, points=points, tracks=tracks, taps=shown)
                 self._tables.add_frame(frame)
 
     def _account(self, counters: dict[str, dict[str, int]]) -> Account:

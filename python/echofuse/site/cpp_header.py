@@ -10,12 +10,21 @@ import numpy as np
 
 __all__ = ["cpp_header"]
 
+#: Where C++ declares each configuration.
+HEADERS = {
+    "SensorRadarNodeConfig": "echofuse/node/node.hpp",
+    "SensorRadarHubConfig": "echofuse/hub/hub.hpp",
+    "ThroughWallNodeConfig": "echofuse/node/through_wall.hpp",
+    "ThroughWallHubConfig": "echofuse/hub/through_wall.hpp",
+}
+
 
 def cpp_header(site_name: str, nodes: Mapping[int, Any], hub: Any) -> str:
     """Return the text of site_config.hpp.
 
-    nodes: `_core.SensorRadarNodeConfig` by node id; hub: `_core.SensorRadarHubConfig`.
+    nodes: the pipeline's configuration of a node by node id, at least one; hub: its hub's.
     """
+    of_node, of_hub = (type(config).__name__ for config in (next(iter(nodes.values())), hub))
     lines = [
         f"// The site '{' '.join(site_name.split())}', by `echofuse export-config`: edit the site file.",
         "#pragma once",
@@ -23,26 +32,26 @@ def cpp_header(site_name: str, nodes: Mapping[int, Any], hub: Any) -> str:
         "#include <cstdint>",
         "",
         "#ifdef ECHOFUSE_FIRMWARE_HUB",
-        '#include "echofuse/hub/hub.hpp"',
+        f'#include "{HEADERS[of_hub]}"',
         "#else",
-        '#include "echofuse/node/node.hpp"',
+        f'#include "{HEADERS[of_node]}"',
         "#endif",
         "",
         "namespace echofuse::site {",
         "",
         "#ifdef ECHOFUSE_FIRMWARE_HUB",
-        "inline hub::SensorRadarHubConfig hub_config() {",
-        "  hub::SensorRadarHubConfig c;",
+        f"inline hub::{of_hub} hub_config() {{",
+        f"  hub::{of_hub} c;",
         *(f"  {line}" for line in _assignments(hub, type(hub)(), "c")),
         "  return c;",
         "}",
         "#else",
         "/// False when the site has no such node.",
-        "inline bool node_config(std::uint16_t node_id, node::SensorRadarNodeConfig& c) {",
+        f"inline bool node_config(std::uint16_t node_id, node::{of_node}& c) {{",
         "  switch (node_id) {",
     ]
     for node_id, config in nodes.items():
-        lines += [f"    case {node_id}:", "      c = node::SensorRadarNodeConfig{};"]
+        lines += [f"    case {node_id}:", f"      c = node::{of_node}{{}};"]
         lines += [f"      {line}" for line in _assignments(config, type(config)(), "c")]
         lines += ["      return true;"]
     lines += [
