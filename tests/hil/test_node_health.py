@@ -198,9 +198,10 @@ OF_A_NODE: dict[str, Provocation] = {
 }
 
 
-# What a node behind a wall counts. It takes ten responses to learn time zero, and 14 more for the background.
+# What a node before a wall counts. It learns time zero, and then the background.
 
-LEARNING, SETTLED = 10, 24
+LEARNING = _core.ThroughWallNodeConfig().time_zero.learning_responses
+SETTLED = LEARNING + _core.ThroughWallNodeConfig().clutter.learning_scans
 
 
 def responses(behind_wall: Recording, count: int) -> list[Scan]:
