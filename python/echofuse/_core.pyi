@@ -1441,7 +1441,7 @@ class TimeZeroConfig:
     def __init__(
         self,
         *,
-        learning_responses: int = 10,
+        learning_responses: int = 5,
         strong_fraction: float = 0.5,
         least_peak_factor: float = 10.0,
         moved_samples: int = 2,
