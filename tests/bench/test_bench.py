@@ -149,5 +149,6 @@ def test_every_stage_and_choice_is_measured_and_the_frame_is_20_times_as_fast() 
     ]
     assert min(row["ratio"] for row in table["stages"]) > 0.0
     assert table["whole_frame"]["ratio"] >= 20.0
+    assert table["through_wall_frame"]["ratio"] >= 20.0
     judged = [each["axis"].split()[0] for each in table["phd_growth"] if each["judged"]]
     assert judged == ["particles", "targets", "measurements"]

@@ -44,6 +44,20 @@ def test_one_person_over_the_seeds(tmp_path: Path) -> None:
     assert np.mean([row["false_track_fraction"] for row in rows]) <= 0.01
 
 
+@pytest.mark.slow
+def test_two_people_behind_a_wall_over_seeds(tmp_path: Path) -> None:
+    """Asked are 0.90 of the worst person too, and 0.80 of her while both stand symmetric: not reached.
+
+    docs/decisions/0008 says why; here is held what is.
+    """
+    assert main(["run", "through-wall", "--seeds", "0-3", "--out", str(tmp_path)]) == 0
+    rows = json.loads((tmp_path / "seeds.json").read_text()).values()
+    assert np.mean([row["bound_ratio"] for row in rows]) <= 1.3
+    assert np.mean([row["false_tracks_per_100_s"] for row in rows]) <= 1.0
+    assert np.mean([row["mean_tracked_fraction"] for row in rows]) >= 0.88
+    assert np.mean([row["worst_tracked_fraction"] for row in rows]) >= 0.84
+
+
 def _tracks(path: Path) -> NDArray[np.void]:
     outputs = read(path).outputs
     assert outputs is not None
