@@ -7,7 +7,7 @@ import numpy as np
 
 from echofuse import _core
 from echofuse.bench.hub_cases import columns
-from echofuse.bench.material import accepted, back_and_forth
+from echofuse.bench.material import accept, accepted, back_and_forth
 from echofuse.bench.timing import Case, Run, timed
 from echofuse.conformance.comparison import as_reference, to_float64
 from echofuse.pipeline import hub_config, node_config
@@ -47,9 +47,9 @@ def through_wall_frame_case() -> Case:
 
 def _core_frame(configs: list[Any], hub_config: Any, sources: tuple[NodeRecording, ...]) -> Run:
     nodes, hub = [_core.ThroughWallNode() for _ in configs], _core.ThroughWallHub()
-    for machine, config in zip([*nodes, hub], [*configs, hub_config], strict=True):
-        if machine.configure(config) != _core.Status.ok:
-            raise RuntimeError(f"the library refuses {config.invalid_field()}")
+    accept(hub.configure(hub_config))
+    for node, config in zip(nodes, configs, strict=True):
+        accept(node.configure(config))
     scans = [np.ascontiguousarray(source.scans, np.float32) for source in sources]
     order, numbers = back_and_forth(RESPONSES), count()
 
