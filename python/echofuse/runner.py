@@ -61,6 +61,8 @@ def process(options: Namespace) -> int:
     """Track the people in a recording."""
     recording = read(options.recording)
     site = _site_of_recording(recording, options)
+    if options.site is not None:
+        recording = replace(recording, site_toml=site.to_toml())  # so that it verifies as it is
     result = _processed(recording, site, options)
     folder = options.out or Path("runs") / options.recording.stem
     return _finish(result, folder, report=not options.no_report)

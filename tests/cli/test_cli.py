@@ -73,6 +73,7 @@ def test_a_node_that_the_site_does_not_know_is_counted(run_folder: Path, tmp_pat
     assert main(["process", recording, "--site", str(smaller), "--no-report", "--out", str(tmp_path)]) == 0
     counters = json.loads((tmp_path / "counters.json").read_text())
     assert counters["hub"]["unknown_node"] == 61
+    assert main(["verify", str(tmp_path / "recording.h5")]) == 0  # by the site that it was processed with
     assert json.loads((tmp_path / "metrics.json").read_text())["tracked_fraction"] > 0.9
 
 

@@ -148,7 +148,7 @@ Status ThroughWallHub::pair(BoundedVector<TraceCouple>& couples) {
   return status;
 }
 
-/// number: of the couple, -1 or less. kTruncated: no room for its point or its track.
+/// number: of the couple, -1 or less. kTruncated: no room for its track.
 Status ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
   const float reach_m = kSameTrace / config_.trace_pairing.clock_hz * kSpeedOfLight_mps;
   weight_.fill(0.0f);
