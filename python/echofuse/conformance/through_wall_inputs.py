@@ -14,7 +14,7 @@ from echofuse.simulation.through_wall_scene import case_study_walkers, through_w
 
 KINDS = ("plain", "power-up", "saturated", "dead", "no cross-talk")  # of a seed, by turns
 SETTLED = 13  # responses until time zero and background are known, by default
-RESPONSES = SETTLED + 12
+RESPONSES = SETTLED + 24  # past the 20 of which the background is a plain mean
 AT = SETTLED + 4  # where something goes wrong
 LASTS = 3  # responses
 
