@@ -24,14 +24,11 @@ py::dict counters(const ThroughWallHub& self) {
 }
 
 /// Paths of each receiver (n_r,) [m], as a frame holds them.
-BoundedVector<hub::FrameDetection, hub::kMaxFrameDetections>& fill_paths(
-    const std::vector<FloatArray>& paths,
-    BoundedVector<hub::FrameDetection, hub::kMaxFrameDetections>& frame) {
+void fill_paths(const std::vector<FloatArray>& paths, BoundedVector<hub::FrameDetection>& frame) {
   for (std::size_t r = 0; r < paths.size(); ++r)
     for (const float path_m : as_span(paths[r], "paths_m"))
       if (!frame.try_push_back({static_cast<int>(r), path_m, 1.0f}))
         throw py::value_error("paths_m: more than a frame holds");
-  return frame;
 }
 
 void bind_path_tracker(py::module_& m) {

@@ -87,7 +87,7 @@ class ThroughWallHub {
   LineFix locate_paths();
   bool available(std::size_t detection) const;
   bool use(std::size_t receiver, float path_m, float reach_m, std::int32_t number);
-  void use_between(const LineFix& fix, std::int32_t number);
+  bool use_between(const LineFix& fix, std::int32_t number);
   Status track(float dt_s, link::Tracks& tracks);
   void show_associated();
   void show_points();

@@ -160,10 +160,7 @@ Status ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
     weight_[receiver] = 1.0f;
   }
   LineFix fix = locate_paths();
-  if (fix.status == LineFixStatus::kFix && config_.n_nodes > 2) {
-    use_between(fix, number);
-    fix = locate_paths();
-  }
+  if (fix.status == LineFixStatus::kFix && use_between(fix, number)) fix = locate_paths();
   if (fix.status != LineFixStatus::kFix) {
     ++counted_.unlocated;
     return Status::kOk;
@@ -211,19 +208,21 @@ bool ThroughWallHub::use(std::size_t receiver, float path_m, float reach_m, std:
   return true;
 }
 
-/// The traces of the receivers between those of a couple that its fix explains.
-void ThroughWallHub::use_between(const LineFix& fix, std::int32_t number) {
+/// The traces of the receivers between those of a couple that its fix explains; whether there are any.
+bool ThroughWallHub::use_between(const LineFix& fix, std::int32_t number) {
   const AntennaRay tx = antenna_ray(line_locator_.wall(), fix.position, 0.0f);
+  bool found = false;
   for (std::size_t r = 0; r < static_cast<std::size_t>(config_.n_nodes); ++r) {
     if (r == first_ || r == last_) continue;
-    const AntennaRay rx = antenna_ray(line_locator_.wall(), fix.position, rx_x_m_[r]);
-    const float x = tx.gradient.x_m + rx.gradient.x_m;
-    const float y = tx.gradient.y_m + rx.gradient.y_m;
+    const AntennaRay path = tx + antenna_ray(line_locator_.wall(), fix.position, rx_x_m_[r]);
+    const float x = path.gradient.x_m;
+    const float y = path.gradient.y_m;
     const float variance = x * x * fix.covariance_xx_m2 + 2.0f * x * y * fix.covariance_xy_m2 +
                            y * y * fix.covariance_yy_m2 +
                            config_.line_locator.path_std_m * config_.line_locator.path_std_m;
-    (void)use(r, tx.optical_m + rx.optical_m, kBetweenDeviations * std::sqrt(variance), number);
+    found = use(r, path.optical_m, kBetweenDeviations * std::sqrt(variance), number) || found;
   }
+  return found;
 }
 
 Status ThroughWallHub::track(float dt_s, link::Tracks& tracks) {

@@ -44,6 +44,11 @@ struct AntennaRay {
 /// position: y_m > 0, before the antenna's wall or behind it.
 AntennaRay antenna_ray(const Wall& wall, const Point& position, float antenna_x_m);
 
+/// The way there and the way back: a path.
+inline AntennaRay operator+(const AntennaRay& a, const AntennaRay& b) {
+  return {a.optical_m + b.optical_m, {a.gradient.x_m + b.gradient.x_m, a.gradient.y_m + b.gradient.y_m}};
+}
+
 /// Where two ellipses with one focus at the origin and the others at (x1, 0), (x2, 0) meet, in closed form: with
 /// k = (d^2 - x_r^2) / 2, x = (k2 d1 - k1 d2) / (x1 d2 - x2 d1) and y^2 = ((x1 x + k1) / d1)^2 - x^2.
 LineFix two_ellipses(float path1_m, float path2_m, float rx1_x_m, float rx2_x_m);

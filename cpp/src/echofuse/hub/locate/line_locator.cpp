@@ -129,10 +129,10 @@ LineLocator::Information LineLocator::information(const Paths& paths, const Poin
   const AntennaRay tx = antenna_ray(wall_, position, 0.0f);
   Information sums;
   for (std::size_t i = 0; i < paths.n; ++i) {
-    const AntennaRay rx = antenna_ray(wall_, position, paths.rx_x_m[i]);
-    const float x = tx.gradient.x_m + rx.gradient.x_m;
-    const float y = tx.gradient.y_m + rx.gradient.y_m;
-    const float residual = paths.path_m[i] - tx.optical_m - rx.optical_m;
+    const AntennaRay path = tx + antenna_ray(wall_, position, paths.rx_x_m[i]);
+    const float x = path.gradient.x_m;
+    const float y = path.gradient.y_m;
+    const float residual = paths.path_m[i] - path.optical_m;
     const float weight = paths.weight[i];
     sums.xx += weight * x * x;
     sums.xy += weight * x * y;

@@ -273,9 +273,9 @@ PathTracker::Prediction PathTracker::predicted(const TrackState& track) const {
   const AntennaRay tx = antenna_ray(wall_, position, 0.0f);
   Prediction prediction;
   for (std::size_t r = 0; r < n_receivers_; ++r) {
-    const AntennaRay rx = antenna_ray(wall_, position, rx_x_m_[r]);
-    prediction.path_m[r] = tx.optical_m + rx.optical_m;
-    prediction.gradient[r] = {tx.gradient.x_m + rx.gradient.x_m, tx.gradient.y_m + rx.gradient.y_m};
+    const AntennaRay path = tx + antenna_ray(wall_, position, rx_x_m_[r]);
+    prediction.path_m[r] = path.optical_m;
+    prediction.gradient[r] = {path.gradient.x_m, path.gradient.y_m};
   }
   return prediction;
 }
