@@ -1,6 +1,6 @@
 """Compares one tap of a target with the reference, and keeps the score: one row a choice and tap."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -54,6 +54,13 @@ class Scoreboard:
     def row(self, choice: str, tap: str) -> Row:
         """Return the row, made at its first mention: a tap that never comes is 'nothing compared'."""
         return self._rows.setdefault((choice, tap), Row(choice=choice, tap=tap))
+
+    def shows(self, choice: str, where: str, taps: Iterable[str], shown: Mapping[str, object]) -> bool:
+        """Whether a target shows all taps; one that it does not is a failure of that tap."""
+        missing = [tap for tap in taps if tap not in shown]
+        for tap in missing:
+            self.row(choice, tap).failures.append(f"{where}: the target shows no such tap")
+        return not missing
 
     def floats(
         self,
@@ -134,6 +141,46 @@ class Scoreboard:
                 f"(margin {margins.flat[index]:.3g})"
             )
         return False
+
+
+class TapComparison:
+    """What a node showed of one scan, `got`, beside what the reference did, `expected`, by tap."""
+
+    tolerances: str  # what their names begin with
+
+    def __init__(self, board: Scoreboard, choice: str, where: str) -> None:
+        self.board, self.choice, self.where = board, choice, where
+        self.got: Mapping[str, NDArray[Any]] = {}
+        self.expected: Mapping[str, NDArray[np.float64]] = {}
+
+    def floats(
+        self,
+        tap: str,
+        tolerance: str,
+        got: ArrayLike | None = None,
+        expected: ArrayLike | None = None,
+        *,
+        margin: ArrayLike = np.inf,
+        scale: ArrayLike | None = None,
+    ) -> bool:
+        """Compare a tap, or `got` and `expected` of it; see `Scoreboard.floats`."""
+        if got is None or expected is None:
+            got, expected = self.got[tap], self.expected[tap]
+        name = f"{self.tolerances}.{tolerance}"
+        return self.board.floats(self.choice, tap, self.where, got, expected, name, margin, scale)
+
+    def decisions(
+        self,
+        tap: str,
+        got: ArrayLike | None = None,
+        expected: ArrayLike | None = None,
+        *,
+        margin: ArrayLike = np.inf,
+    ) -> bool:
+        """Compare a tap, or `got` and `expected` of it; see `Scoreboard.decisions`."""
+        if got is None or expected is None:
+            got, expected = self.got[tap], self.expected[tap]
+        return self.board.decisions(self.choice, tap, self.where, got, expected, margin)
 
 
 def as_reference(config: object) -> Any:

@@ -10,10 +10,10 @@ from contextlib import closing
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from echofuse.conformance.choices import Choice
-from echofuse.conformance.comparison import Scoreboard, as_reference, to_float64
+from echofuse.conformance.comparison import Scoreboard, TapComparison, as_reference, to_float64
 from echofuse.conformance.inputs import NodeInput
 from echofuse.conformance.target import ConformanceTarget, NodeAnswer
 from echofuse.reference.node.node import MAX_DETECTIONS, NodeReport, SensorRadarNode, heaviest
@@ -63,11 +63,13 @@ def conform_node(
                     break
 
 
-class _Scan:
+class _Scan(TapComparison):
     """One scan's taps."""
 
+    tolerances = "sensor_radar"
+
     def __init__(self, board: Scoreboard, choice: str, where: str, config: Any) -> None:
-        self.board, self.choice, self.where = board, choice, where
+        super().__init__(board, choice, where)
         self.sample_rate_hz = float(config.sample_rate_hz)
         self.whole_samples = config.alignment.method != "sub_sample"
 
@@ -78,39 +80,17 @@ class _Scan:
         self.peak = float(
             np.max(np.abs(self.expected["aligned"]))
         )  # what residuals are differences of [count]
-        missing = [tap for tap in NODE_TAPS if tap not in self.got]
-        for tap in missing:
-            self.board.row(self.choice, tap).failures.append(f"{self.where}: the target shows no such tap")
-        if missing:
+        if not self.board.shows(self.choice, self.where, NODE_TAPS, self.got):
             return False
-        self._floats("scan", "scan")
-        self._floats("envelope", "envelope")
+        self.floats("scan", "scan")
+        self.floats("envelope", "envelope")
         if not self._direct_path() or not self._alignment():
             return False
-        self._floats("aligned", "aligned")
-        self._floats("residual", "residual", scale=self.peak)
+        self.floats("aligned", "aligned")
+        self.floats("residual", "residual", scale=self.peak)
         if self._detector():
             self._clusters()
         return True
-
-    def _floats(
-        self,
-        tap: str,
-        tolerance: str,
-        got: ArrayLike | None = None,
-        expected: ArrayLike | None = None,
-        *,
-        margin: ArrayLike = np.inf,
-        scale: ArrayLike | None = None,
-    ) -> bool:
-        """Compare a tap, or `got` and `expected` of it."""
-        if got is None or expected is None:
-            got, expected = self.got[tap], self.expected[tap]
-        name = f"sensor_radar.{tolerance}"
-        return self.board.floats(self.choice, tap, self.where, got, expected, name, margin, scale)
-
-    def _decisions(self, tap: str, got: ArrayLike, expected: ArrayLike, margin: ArrayLike = np.inf) -> bool:
-        return self.board.decisions(self.choice, tap, self.where, got, expected, margin)
 
     def _direct_path(self) -> bool:
         got, expected, margin = (
@@ -119,22 +99,22 @@ class _Scan:
             self.margins["direct_path"],
         )
         return (
-            self._decisions("direct_path", got[0], expected[0], margin)
-            and self._floats("direct_path", "toa", got[1], expected[1], margin=margin)
-            and self._floats("direct_path", "path_threshold", got[2], expected[2], margin=margin)
+            self.decisions("direct_path", got[0], expected[0], margin=margin)
+            and self.floats("direct_path", "toa", got[1], expected[1], margin=margin)
+            and self.floats("direct_path", "path_threshold", got[2], expected[2], margin=margin)
         )
 
     def _alignment(self) -> bool:
         got, expected, margin = self.got["alignment"], self.expected["alignment"], self.margins["alignment"]
         if self.whole_samples:
-            same = self._decisions("alignment", got[0], expected[0], margin)
+            same = self.decisions("alignment", got[0], expected[0], margin=margin)
         else:
-            same = self._floats("alignment", "shift", got[0], expected[0], margin=margin)
-        return same and self._floats("alignment", "correlation", got[1], expected[1], margin=margin)
+            same = self.floats("alignment", "shift", got[0], expected[0], margin=margin)
+        return same and self.floats("alignment", "correlation", got[1], expected[1], margin=margin)
 
     def _detector(self) -> bool:
         margin = self.margins["decisions"]
-        self._floats(
+        self.floats(
             "threshold",
             "threshold",
             np.sqrt(self.got["threshold"]),
@@ -142,17 +122,17 @@ class _Scan:
             margin=margin,
             scale=self.peak,
         )
-        return self._decisions("decisions", self.got["decisions"], self.expected["decisions"], margin)
+        return self.decisions("decisions", self.got["decisions"], self.expected["decisions"], margin=margin)
 
     def _clusters(self) -> None:
         got, expected = self.got["range_clusters"], self.expected["range_clusters"]
-        if not self._decisions("range_clusters", got[:, 1:], expected[:, 1:]):
+        if not self.decisions("range_clusters", got[:, 1:], expected[:, 1:]):
             return
         first = expected[:, 2].astype(int)
         before = np.maximum(first - 1, 0)
         margin = np.minimum(self.margins["decisions"][first], self.margins["decisions"][before])
         scale = self._samples_a_count(first, before) * self.peak
-        self._floats("range_clusters", "position", got[:, 0], expected[:, 0], margin=margin, scale=scale)
+        self.floats("range_clusters", "position", got[:, 0], expected[:, 0], margin=margin, scale=scale)
         reported_rows = {cluster.first_sample for cluster in heaviest(_clusters(expected), MAX_DETECTIONS)}
         kept = np.array([int(row[2]) in reported_rows for row in expected], dtype=bool)
         for reported in (self.got["detections"], self.answer.detections):
@@ -167,8 +147,8 @@ class _Scan:
 
     def _detections(self, got: Samples, margin: Samples, scale: Samples) -> None:
         expected = self.expected["detections"]
-        if self._decisions("detections", got[:, 1], expected[:, 1]):
-            self._floats("detections", "delay", got[:, 0], expected[:, 0], margin=margin, scale=scale)
+        if self.decisions("detections", got[:, 1], expected[:, 1]):
+            self.floats("detections", "delay", got[:, 0], expected[:, 0], margin=margin, scale=scale)
 
 
 def _clusters(rows: Samples) -> list[RangeCluster]:

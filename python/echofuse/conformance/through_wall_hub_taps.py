@@ -64,10 +64,7 @@ class _Frame:
         if answer is None or frame is None:
             self.board.row(self.choice, "frame").failures.append(f"{self.where}: closed by one side only")
             return False
-        missing = [tap for tap in THROUGH_WALL_HUB_TAPS if tap not in answer.taps]
-        for tap in missing:
-            self.board.row(self.choice, tap).failures.append(f"{self.where}: the target shows no such tap")
-        if missing:
+        if not self.board.shows(self.choice, self.where, THROUGH_WALL_HUB_TAPS, answer.taps):
             return False
         got, expected = {tap: to_float64(answer.taps[tap]) for tap in THROUGH_WALL_HUB_TAPS}, frame.taps
         margin = {tap: MARGIN_SHARE * value for tap, value in frame.margins.items()}

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from contextlib import closing
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from echofuse.conformance.choices import Choice
-from echofuse.conformance.comparison import Scoreboard, as_reference, to_float64
+from echofuse.conformance.comparison import Scoreboard, TapComparison, as_reference, to_float64
 from echofuse.conformance.target import ConformanceTarget, NodeAnswer
 from echofuse.conformance.through_wall_inputs import ThroughWallInput
 from echofuse.reference.node.through_wall import ThroughWallNode, ThroughWallReport
@@ -56,66 +56,37 @@ def conform_through_wall_node(
                     break
 
 
-class _Response:
+class _Response(TapComparison):
     """One response's taps."""
 
+    tolerances = "through_wall"
+
     def __init__(self, board: Scoreboard, choice: str, where: str, sample_rate_hz: float) -> None:
-        self.board, self.choice, self.where = board, choice, where
+        super().__init__(board, choice, where)
         self.sample_rate_hz = sample_rate_hz
 
     def compare(self, answer: NodeAnswer, report: ThroughWallReport) -> bool:
         """Whether the next response may be compared as well."""
         self.got, self.expected, self.margins = answer.taps, report.taps, report.margins
-        missing = [tap for tap in THROUGH_WALL_NODE_TAPS if tap not in self.got]
-        for tap in missing:
-            self.board.row(self.choice, tap).failures.append(f"{self.where}: the target shows no such tap")
-        if missing:
+        if not self.board.shows(self.choice, self.where, THROUGH_WALL_NODE_TAPS, self.got):
             return False
-        self._floats("scan", "carried")
+        self.floats("scan", "carried")
         if not self._time_zero():
             return False
-        self._floats("rotated", "carried")
+        self.floats("rotated", "carried")
         # what is subtracted is a difference of samples so large [count]
         peak = float(np.max(np.abs(self.expected["rotated"])))
-        self._floats("subtracted", "subtracted", scale=peak)
-        self._floats("envelope", "subtracted", scale=peak)
-        self._floats("enhanced", "enhanced", scale=peak / self._divisor())
-        if self._decisions("decisions", margin=self.margins["decisions"]):
+        self.floats("subtracted", "subtracted", scale=peak)
+        self.floats("envelope", "subtracted", scale=peak)
+        self.floats("enhanced", "enhanced", scale=peak / self._divisor())
+        if self.decisions("decisions", margin=self.margins["decisions"]):
             self._traces(answer, report, peak)
         return True
 
-    def _floats(
-        self,
-        tap: str,
-        tolerance: str,
-        got: ArrayLike | None = None,
-        expected: ArrayLike | None = None,
-        *,
-        margin: ArrayLike = np.inf,
-        scale: ArrayLike | None = None,
-    ) -> bool:
-        """Compare a tap, or `got` and `expected` of it."""
-        if got is None or expected is None:
-            got, expected = self.got[tap], self.expected[tap]
-        name = f"through_wall.{tolerance}"
-        return self.board.floats(self.choice, tap, self.where, got, expected, name, margin, scale)
-
-    def _decisions(
-        self,
-        tap: str,
-        got: ArrayLike | None = None,
-        expected: ArrayLike | None = None,
-        *,
-        margin: ArrayLike = np.inf,
-    ) -> bool:
-        if got is None or expected is None:
-            got, expected = self.got[tap], self.expected[tap]
-        return self.board.decisions(self.choice, tap, self.where, got, expected, margin)
-
     def _time_zero(self) -> bool:
         got, expected, margin = self.got["time_zero"], self.expected["time_zero"], self.margins["time_zero"]
-        same = self._decisions("time_zero", got[:2], expected[:2], margin=margin)
-        return same and self._floats("time_zero", "fraction", got[2], expected[2], margin=margin)
+        same = self.decisions("time_zero", got[:2], expected[:2], margin=margin)
+        return same and self.floats("time_zero", "fraction", got[2], expected[2], margin=margin)
 
     def _divisor(self) -> Samples:
         """What each sample was divided by to be enhanced [count]."""
@@ -124,21 +95,21 @@ class _Response:
 
     def _traces(self, answer: NodeAnswer, report: ThroughWallReport, peak: float) -> None:
         got, expected = self.got["target_traces"], self.expected["target_traces"]
-        if not self._decisions("target_traces", got[:, 1], expected[:, 1]):
+        if not self.decisions("target_traces", got[:, 1], expected[:, 1]):
             return
-        self._floats("target_traces", "trace", got[:, 0], expected[:, 0])
+        self.floats("target_traces", "trace", got[:, 0], expected[:, 0])
         edges, margin = self.expected["leading_edges"], self.margins["leading_edges"]
         scale = peak * self._samples_a_count(edges[:, 0])
         got = self.got["leading_edges"]
-        self._decisions("leading_edges", got[:, 1], edges[:, 1])
-        if not self._floats("leading_edges", "edge", got[:, 0], edges[:, 0], margin=margin, scale=scale):
+        self.decisions("leading_edges", got[:, 1], edges[:, 1])
+        if not self.floats("leading_edges", "edge", got[:, 0], edges[:, 0], margin=margin, scale=scale):
             return
         margin, scale = self.margins["detections"], scale[report.traces] / self.sample_rate_hz
         expected = self.expected["detections"]
         for reported in (self.got["detections"], answer.detections):
             delay_s, weight = to_float64(reported).T
-            if self._decisions("detections", weight, expected[:, 1], margin=margin):
-                self._floats("detections", "delay", delay_s, expected[:, 0], margin=margin, scale=scale)
+            if self.decisions("detections", weight, expected[:, 1], margin=margin):
+                self.floats("detections", "delay", delay_s, expected[:, 0], margin=margin, scale=scale)
 
     def _samples_a_count(self, edges: Samples) -> Samples:
         """How far an edge moves by an error of the envelope [sample/count]; 0 where it begins its window."""
