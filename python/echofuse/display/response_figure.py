@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display import setting, style
-from echofuse.display.stack_figure import Extent, draw_decibel, draw_hits, draw_share
+from echofuse.display.stack_figure import Extent, draw_decibel, draw_hits, draw_share, draw_truth
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,7 +50,11 @@ def response_figure(result: RunResult, name: str) -> Figure:
         draw_hits(panels[2, 0], stack.decisions, extent)
         _draw_traces(panels[2, 1], stack.delays, time_s)
         _draw_associated(panels[3, 0], result, node, time_s)
-        _draw_truth(panels[3, 1], result, truth_ns)
+        frames_s = setting.elapsed_s(result, result.frame_time_us)
+        people = enumerate(result.recording.truth)
+        draw_truth(panels[3, 1], frames_s, [(person.id, truth_ns[:, index]) for index, person in people])
+        if result.recording.truth:
+            panels[3, 1].legend(loc="upper left", title="person", title_fontsize=8.0)
         titles = (
             "Raw responses, from any chip on",
             "Turned to time zero",
@@ -120,31 +124,6 @@ def _draw_associated(axes: Axes, result: RunResult, node: NodeRecording, time_s:
         axes.scatter([], [], s=2.4, color=style.QUIET, label="paired")
     if axes.collections:
         axes.legend(loc="upper left", markerscale=3.0, handlelength=1.0, handletextpad=0.2)
-
-
-def _draw_truth(axes: Axes, result: RunResult, truth_ns: NDArray[np.float64]) -> None:
-    if truth_ns.shape[1] == 0:
-        axes.text(
-            0.5,
-            0.5,
-            "the recording holds no truth",
-            transform=axes.transAxes,
-            ha="center",
-            va="center",
-            color=style.QUIET,
-        )
-        return
-    frames_s = setting.elapsed_s(result, result.frame_time_us)
-    for index, person in enumerate(result.recording.truth):
-        axes.plot(
-            truth_ns[:, index],
-            frames_s,
-            color=style.TRUTH,
-            linewidth=1.6,
-            linestyle=style.person_dashes(index),
-            label=person.id,
-        )
-    axes.legend(loc="upper left", title="person", title_fontsize=8.0)
 
 
 def _dots(

@@ -42,7 +42,12 @@ def stack_figure(result: RunResult, name: str) -> Figure:
     frames_s = setting.elapsed_s(result, result.frame_time_us)
     with style.look():
         figure, panels = style.new_panels(2, 2, 6.4, legend=False, right_in=0.85, share_y=True)
-        _draw_truth(panels[0, 0], frames_s, truth)
+        panels[0, 0].set_title("(a) True delay of the echo")
+        draw_truth(panels[0, 0], frames_s, truth)
+        if len(truth) > 1:
+            panels[0, 0].legend(
+                loc="upper right", title="person", title_fontsize=8.0, frameon=True, edgecolor="none"
+            )
         panels[0, 1].set_title("(b) After clutter removal")
         draw_decibel(figure, panels[0, 1], stack.residual, extent, "residual ")
         panels[1, 0].set_title("(c) Decisions")
@@ -87,10 +92,10 @@ def _true_delays_ns(result: RunResult, node: NodeRecording) -> list[tuple[str, N
     ]
 
 
-def _draw_truth(
+def draw_truth(
     axes: Axes, frames_s: NDArray[np.float64], truth: list[tuple[str, NDArray[np.float64]]]
 ) -> None:
-    axes.set_title("(a) True delay of the echo")
+    """Draw people's delays (n_frames,) [ns] by name over the frames' times, or say that none is known."""
     if not truth:
         axes.text(
             0.5,
@@ -110,8 +115,6 @@ def _draw_truth(
             linestyle=style.person_dashes(index),
             label=name,
         )
-    if len(truth) > 1:
-        axes.legend(loc="upper right", title="person", title_fontsize=8.0, frameon=True, edgecolor="none")
 
 
 def draw_decibel(figure: Figure, axes: Axes, image: NDArray[Any], extent: Extent, what: str = "") -> None:
