@@ -100,8 +100,9 @@ void bind_phd_filter(py::module_& m) {
 }
 
 void bind_track_manager(py::module_& m) {
-  PYBIND11_NUMPY_DTYPE(Track, id, state, frames_since_update, x_m, y_m, vx_mps, vy_mps, covariance_xx_m2,
-                       covariance_xy_m2, covariance_yy_m2);
+  PYBIND11_NUMPY_DTYPE(Track, id, state, frames_since_update, x_m, y_m, z_m, vx_mps, vy_mps, vz_mps,
+                       covariance_xx_m2, covariance_xy_m2, covariance_yy_m2, covariance_xz_m2,
+                       covariance_yz_m2, covariance_zz_m2);
   py::enum_<TrackState>(m, "TrackState")
       .value("unconfirmed", TrackState::kUnconfirmed)
       .value("confirmed", TrackState::kConfirmed)

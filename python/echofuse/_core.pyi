@@ -4799,7 +4799,7 @@ LIMITS: dict = {
     "max_assignment": 32,
 }
 MEASUREMENT_STAGES_BYTES: int = 34640
-SENSOR_RADAR_HUB_BYTES: int = 201096
+SENSOR_RADAR_HUB_BYTES: int = 201576
 SENSOR_RADAR_NODE_BYTES: int = 65928
 TAPS: dict = {
     0: ("scan", 0),

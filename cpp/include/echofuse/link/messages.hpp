@@ -32,9 +32,10 @@ struct Track {
   std::int32_t id;  ///< unique while the hub runs, ascending by birth
   TrackState state;
   std::int32_t frames_since_update;                            ///< 0 when updated in this frame
-  float x_m, y_m;                                              ///< [m] position
-  float vx_mps, vy_mps;                                        ///< [m/s] velocity
+  float x_m, y_m, z_m;                                         ///< [m] position; z is 0 of a planar hub
+  float vx_mps, vy_mps, vz_mps;                                ///< [m/s] velocity
   float covariance_xx_m2, covariance_xy_m2, covariance_yy_m2;  ///< [m^2] of the position
+  float covariance_xz_m2 = 0.0f, covariance_yz_m2 = 0.0f, covariance_zz_m2 = 0.0f;
 };
 
 /// What the hub says after a frame.

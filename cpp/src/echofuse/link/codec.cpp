@@ -68,8 +68,10 @@ Track from_wire(const echofuse_Track_1_0& wire) {
           wire.frames_since_update,
           wire.position[0],
           wire.position[1],
+          0.0f,
           wire.velocity[0],
           wire.velocity[1],
+          0.0f,
           wire.covariance[0],
           wire.covariance[1],
           wire.covariance[2]};

@@ -145,7 +145,7 @@ void PathTracker::report(link::Tracks& tracks) const {
     const auto seen = track.misses == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
     ECHOFUSE_CHECK(tracks.tracks.try_push_back(
         {track.id, track.confirmed ? seen : link::TrackState::kUnconfirmed, track.misses, state(0), state(2),
-         state(1), state(3), covariance(0, 0), covariance(0, 2), covariance(2, 2)}));
+         0.0f, state(1), state(3), 0.0f, covariance(0, 0), covariance(0, 2), covariance(2, 2)}));
   }
 }
 

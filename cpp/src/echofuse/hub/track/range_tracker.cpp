@@ -268,8 +268,8 @@ void RangeTracker::report(link::Tracks& tracks) const {
     link::TrackState state = link::TrackState::kUnconfirmed;
     if (track.confirmed)
       state = track.frames_since_update == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
-    ECHOFUSE_CHECK(tracks.tracks.try_push_back(
-        {track.id, state, track.frames_since_update, x(0), x(2), x(1), x(3), p(0, 0), p(0, 2), p(2, 2)}));
+    ECHOFUSE_CHECK(tracks.tracks.try_push_back({track.id, state, track.frames_since_update, x(0), x(2), 0.0f,
+                                                x(1), x(3), 0.0f, p(0, 0), p(0, 2), p(2, 2)}));
     for (std::size_t i = tracks.tracks.size() - 1; i > 0 && tracks.tracks[i].id < tracks.tracks[i - 1].id;
          --i)
       std::swap(tracks.tracks[i], tracks.tracks[i - 1]);

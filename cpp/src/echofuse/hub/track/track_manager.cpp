@@ -231,7 +231,7 @@ void TrackManager::report(link::Tracks& tracks) const {
     const auto& state = track.filter.state();
     const auto& covariance = track.filter.covariance();
     ECHOFUSE_CHECK(tracks.tracks.try_push_back({track.id, track.state, track.frames_since_update, state(0),
-                                                state(2), state(1), state(3), covariance(0, 0),
+                                                state(2), 0.0f, state(1), state(3), 0.0f, covariance(0, 0),
                                                 covariance(0, 2), covariance(2, 2)}));
   }
 }
