@@ -39,6 +39,14 @@ Matrix array_to_matrix(const FloatArray& array, const char* name) {
   return matrix;
 }
 
+template <class Vector>
+Vector array_to_vector(const FloatArray& array, const char* name) {
+  const auto values = as_span(array, name);
+  if (values.size() != static_cast<std::size_t>(Vector::SizeAtCompileTime))
+    throw py::value_error(std::string(name) + " has the wrong shape");
+  return Vector(values.data());
+}
+
 void bind_functions(py::module_& m) {
   m.def(
       "gaussian_kernel",
@@ -73,33 +81,39 @@ void bind_functions(py::module_& m) {
       py::arg("cost").noconvert(), "(status, column of each row or -1) of the least total cost.");
 }
 
-void bind_kalman(py::module_& m) {
-  using State = ConstantVelocityFilter::State;
-  using Covariance = ConstantVelocityFilter::Covariance;
-  using Covariance2 = ConstantVelocityFilter::Covariance2;
-  py::class_<ConstantVelocityFilter>(m, "ConstantVelocityFilter", "State x, vx, y, vy and its covariance.")
+template <int kDimension>
+void bind_kalman(py::module_& m, const char* name, const char* documentation) {
+  using Filter = ConstantVelocityFilter<kDimension>;
+  using Covariance = typename Filter::Covariance;
+  using PositionCovariance = typename Filter::PositionCovariance;
+  using State = typename Filter::State;
+  using Vector = typename Filter::Vector;
+  py::class_<Filter>(m, name, documentation)
       .def(py::init([](const FloatArray& state, const FloatArray& covariance) {
-             const auto values = as_span(state, "state");
-             if (values.size() != 4) throw py::value_error("state must have shape (4,)");
-             return ConstantVelocityFilter(State(values[0], values[1], values[2], values[3]),
-                                           array_to_matrix<Covariance>(covariance, "covariance"));
+             return Filter(array_to_vector<State>(state, "state"),
+                           array_to_matrix<Covariance>(covariance, "covariance"));
            }),
            py::arg("state").noconvert(), py::arg("covariance").noconvert())
-      .def("predict", &ConstantVelocityFilter::predict, py::arg("dt_s"),
-           py::arg("acceleration_density_m2ps3"), py::arg("velocity_decay") = 1.0f)
+      .def("predict", &Filter::predict, py::arg("dt_s"), py::arg("acceleration_density_m2ps3"),
+           py::arg("velocity_decay") = 1.0f)
       .def(
           "update",
-          [](ConstantVelocityFilter& self, float x_m, float y_m, const FloatArray& covariance) {
-            self.update({x_m, y_m}, array_to_matrix<Covariance2>(covariance, "measurement_covariance_m2"));
+          [](Filter& self, const FloatArray& position, const FloatArray& covariance) {
+            self.update(array_to_vector<Vector>(position, "position_m"),
+                        array_to_matrix<PositionCovariance>(covariance, "measurement_covariance_m2"));
           },
-          py::arg("x_m"), py::arg("y_m"), py::arg("measurement_covariance_m2").noconvert())
-      .def_property_readonly("state",
-                             [](const ConstantVelocityFilter& self) {
-                               return to_array(Span<const float>(self.state().data(), 4));
-                             })
-      .def_property_readonly("covariance", [](const ConstantVelocityFilter& self) {
-        return matrix_to_array(self.covariance());
-      });
+          py::arg("position_m").noconvert(), py::arg("measurement_covariance_m2").noconvert())
+      .def(
+          "update_along",
+          [](Filter& self, const FloatArray& direction, float innovation_m, float variance_m2) {
+            self.update_along(array_to_vector<Vector>(direction, "direction"), innovation_m, variance_m2);
+          },
+          py::arg("direction").noconvert(), py::arg("innovation_m"), py::arg("variance_m2"))
+      .def_property_readonly(
+          "state",
+          [](const Filter& self) { return to_array(Span<const float>(self.state().data(), 2 * kDimension)); })
+      .def_property_readonly("covariance",
+                             [](const Filter& self) { return matrix_to_array(self.covariance()); });
 }
 
 void bind_mixture(py::module_& m) {
@@ -154,7 +168,8 @@ void bind_mixture(py::module_& m) {
 
 void bind_estimation(py::module_& m) {
   bind_functions(m);
-  bind_kalman(m);
+  bind_kalman<2>(m, "ConstantVelocityFilter", "State x, vx, y, vy and its covariance.");
+  bind_kalman<3>(m, "ConstantVelocityFilter3d", "State x, vx, y, vy, z, vz and its covariance.");
   bind_mixture(m);
 }
 

@@ -40,7 +40,7 @@ struct TapRecorder {
 template <class Tracker>
 py::tuple run(Tracker& self, const FloatArray& measurements, float dt_s) {
   link::Tracks tracks;
-  const auto positions = to_positions(measurements, "measurements");
+  const auto positions = to_positions<2>(measurements, "measurements");
   const Status status = self.process(view(positions), dt_s, tracks);
   return py::make_tuple(status, to_array(tracks));
 }
@@ -80,7 +80,7 @@ void bind_phd_filter(py::module_& m) {
       .def(
           "update",
           [](PhdFilter& self, const FloatArray& measurements) {
-            const auto positions = to_positions(measurements, "measurements");
+            const auto positions = to_positions<2>(measurements, "measurements");
             return self.update(view(positions));
           },
           py::arg("measurements").noconvert(), "measurements (m, 2) [m]")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common.hpp"
+#include "echofuse/core/eigen.hpp"
 #include "echofuse/estimation/particle_set.hpp"
 
 namespace echofuse::bindings {
@@ -27,11 +28,12 @@ inline std::vector<estimation::Particle> to_particles(const FloatArray& array) {
   return particles;
 }
 
-/// From an array (m, 2).
-inline std::vector<estimation::Position> to_positions(const FloatArray& array, const char* name) {
-  const auto rows = as_span_of_rows(array, 2, name);
-  std::vector<estimation::Position> positions;
-  for (std::size_t i = 0; i < rows.size(); i += 2) positions.push_back({rows[i], rows[i + 1]});
+/// From an array (m, kDimension).
+template <int kDimension>
+std::vector<Eigen::Matrix<float, kDimension, 1>> to_positions(const FloatArray& array, const char* name) {
+  const auto rows = as_span_of_rows(array, kDimension, name);
+  std::vector<Eigen::Matrix<float, kDimension, 1>> positions;
+  for (std::size_t i = 0; i < rows.size(); i += kDimension) positions.emplace_back(rows.data() + i);
   return positions;
 }
 

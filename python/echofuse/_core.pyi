@@ -26,6 +26,7 @@ __all__: list[str] = [
     "ClutterMethod",
     "ClutterSpread",
     "ConstantVelocityFilter",
+    "ConstantVelocityFilter3d",
     "Coverage",
     "CoverageConfig",
     "DirectPath",
@@ -484,9 +485,43 @@ class ConstantVelocityFilter:
     ) -> None: ...
     def update(
         self,
-        x_m: typing.SupportsFloat | typing.SupportsIndex,
-        y_m: typing.SupportsFloat | typing.SupportsIndex,
+        position_m: numpy.typing.NDArray[numpy.float32],
         measurement_covariance_m2: numpy.typing.NDArray[numpy.float32],
+    ) -> None: ...
+    def update_along(
+        self,
+        direction: numpy.typing.NDArray[numpy.float32],
+        innovation_m: typing.SupportsFloat | typing.SupportsIndex,
+        variance_m2: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def state(self) -> numpy.typing.NDArray[numpy.float32]: ...
+
+class ConstantVelocityFilter3d:
+    """
+    State x, vx, y, vy, z, vz and its covariance.
+    """
+    def __init__(
+        self, state: numpy.typing.NDArray[numpy.float32], covariance: numpy.typing.NDArray[numpy.float32]
+    ) -> None: ...
+    def predict(
+        self,
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+        acceleration_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        velocity_decay: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    ) -> None: ...
+    def update(
+        self,
+        position_m: numpy.typing.NDArray[numpy.float32],
+        measurement_covariance_m2: numpy.typing.NDArray[numpy.float32],
+    ) -> None: ...
+    def update_along(
+        self,
+        direction: numpy.typing.NDArray[numpy.float32],
+        innovation_m: typing.SupportsFloat | typing.SupportsIndex,
+        variance_m2: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
     @property
     def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...

@@ -11,6 +11,7 @@ from echofuse.reference.estimation.kalman import ConstantVelocityFilter
 from echofuse.reference.estimation.resampling import systematic_resample
 
 SEEDS = range(20)
+FILTERS = {2: _core.ConstantVelocityFilter, 3: _core.ConstantVelocityFilter3d}
 
 
 def test_gaussian_kernel() -> None:
@@ -54,23 +55,27 @@ def test_assignment(shape: tuple[int, int]) -> None:
     assert [row.failures for row in board.rows()] == [[]]
 
 
-def test_kalman() -> None:
-    board = Scoreboard()
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_kalman(dimension: int) -> None:
+    board, kind = Scoreboard(), FILTERS[dimension]
     for seed in SEEDS:
         rng = np.random.default_rng(seed)
-        root = rng.normal(size=(4, 4)).astype(np.float32)
-        state, covariance = rng.normal(0.0, 5.0, 4).astype(np.float32), root @ root.T
-        core = _core.ConstantVelocityFilter(state, covariance)
+        root = rng.normal(size=(2 * dimension, 2 * dimension)).astype(np.float32)
+        state, covariance = rng.normal(0.0, 5.0, 2 * dimension).astype(np.float32), root @ root.T
+        core = kind(state, covariance)
         reference = ConstantVelocityFilter(state.astype(np.float64), covariance.astype(np.float64))
         for _ in range(20):
             dt_s, density, decay = rng.uniform(0.02, 0.3, 3).astype(np.float32).tolist()
             core.predict(dt_s, density, decay)
             reference.predict(dt_s, density, decay)
-            small = rng.normal(0.0, 0.2, (2, 2)).astype(np.float32)
-            noise = (small @ small.T + 0.01 * np.eye(2)).astype(np.float32)
-            z = rng.normal(0.0, 5.0, 2).astype(np.float32)
-            core.update(float(z[0]), float(z[1]), noise)
+            small = rng.normal(0.0, 0.2, (dimension, dimension)).astype(np.float32)
+            noise = (small @ small.T + 0.01 * np.eye(dimension)).astype(np.float32)
+            z, direction = rng.normal(0.0, [[5.0], [1.0]], (2, dimension)).astype(np.float32)
+            core.update(z, noise)
             reference.update(z.astype(np.float64), noise.astype(np.float64))
+            innovation_m, variance_m2 = np.float32(rng.normal(0.0, 0.3)), np.float32(rng.uniform(0.01, 0.1))
+            core.update_along(direction, innovation_m, variance_m2)
+            reference.update_along(direction.astype(np.float64), float(innovation_m), float(variance_m2))
         where = f"seed {seed}"
         board.floats("", "state", where, core.state, reference.state, "estimation.kalman.state")
         board.floats(

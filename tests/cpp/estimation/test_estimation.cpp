@@ -66,15 +66,41 @@ TEST_CASE("assignment refuses lengths that do not fit") {
   CHECK(assign({cost.data(), 4}, 2, 2, {column.data(), 1}) == Status::kInvalidInput);
 }
 
-TEST_CASE("a Kalman update between two equal uncertainties ends in the middle") {
-  ConstantVelocityFilter::Covariance covariance = ConstantVelocityFilter::Covariance::Identity();
-  ConstantVelocityFilter filter(ConstantVelocityFilter::State::Zero(), covariance);
-  filter.update({2.0f, -4.0f}, ConstantVelocityFilter::Covariance2::Identity());
-  CHECK(filter.position().x_m == doctest::Approx(1.0));
-  CHECK(filter.position().y_m == doctest::Approx(-2.0));
-  CHECK(filter.covariance()(0, 0) == doctest::Approx(0.5));
-  CHECK(filter.squared_distance({2.0f, -2.0f}, ConstantVelocityFilter::Covariance2::Identity()) ==
+TEST_CASE_TEMPLATE("a Kalman update between two equal uncertainties ends in the middle", Filter,
+                   ConstantVelocityFilter<2>, ConstantVelocityFilter<3>) {
+  const auto unit = Filter::PositionCovariance::Identity();
+  Filter filter(Filter::State::Zero(), Filter::Covariance::Identity());
+  typename Filter::Vector measured = Filter::Vector::Constant(2.0f);
+  measured(1) = -4.0f;
+  filter.update(measured, unit);
+  CHECK((filter.position() - 0.5f * measured).norm() == doctest::Approx(0.0));
+  CHECK((filter.position_covariance() - 0.5f * unit).norm() == doctest::Approx(0.0));
+  CHECK(filter.velocity().norm() == 0.0f);
+  CHECK(filter.squared_distance(0.5f * measured + Filter::Vector::Unit(1), unit) ==
         doctest::Approx(1.0 / 1.5));
+}
+
+TEST_CASE_TEMPLATE("a filter begins where it is put, and moves by its velocity", Filter,
+                   ConstantVelocityFilter<2>, ConstantVelocityFilter<3>) {
+  constexpr int kAxes = Filter::Vector::SizeAtCompileTime;
+  const typename Filter::Vector position = Filter::Vector::LinSpaced(1.0f, 5.0f);
+  const typename Filter::Vector velocity = Filter::Vector::LinSpaced(-1.0f, 0.5f);
+  typename Filter::PositionCovariance covariance = 0.04f * Filter::PositionCovariance::Identity();
+  covariance(0, kAxes - 1) = covariance(kAxes - 1, 0) = 0.01f;
+  Filter filter = Filter::at(position, covariance, velocity, 0.3f);
+  CHECK(filter.position() == position);
+  CHECK(filter.velocity() == velocity);
+  CHECK(filter.position_covariance() == covariance);
+
+  filter.predict(2.0f, 0.0f);
+  CHECK((filter.position() - (position + 2.0f * velocity)).norm() == doctest::Approx(0.0));
+  const auto along = Filter::Vector::Unit(kAxes - 1);  // 0.04 + (2 * 0.3)^2
+  CHECK(filter.variance_along(along) == doctest::Approx(0.4));
+  CHECK(filter.position_covariance()(0, kAxes - 1) == doctest::Approx(0.01));
+
+  filter.update_along(along, 1.0f, 0.4f);  // as sure as the prediction: half the way
+  CHECK(filter.position()(kAxes - 1) == doctest::Approx(5.0 + 2.0 * 0.5 + 0.5));
+  CHECK(filter.variance_along(along) == doctest::Approx(0.2));
 }
 
 TEST_CASE("the mixture fit refuses bad configurations and keeps the earlier one") {

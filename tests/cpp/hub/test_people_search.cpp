@@ -10,7 +10,7 @@ namespace {
 
 using namespace echofuse;
 using namespace echofuse::hub;
-using estimation::ConstantVelocityFilter;
+using Filter = estimation::ConstantVelocityFilter<2>;
 
 constexpr float kBodyRadius_m = 0.18f;
 const std::array<NodeSite, 6> kNodes{{{1, {5.75f, 0.0f}, {0.0f, 1.5f}},
@@ -42,8 +42,7 @@ struct Room {
   /// Somebody who was at a place in all frames.
   Trail trail(const Point& at) const {
     Trail made;
-    const ConstantVelocityFilter filter(ConstantVelocityFilter::State(at.x_m, 0.0f, at.y_m, 0.0f),
-                                        1e-4f * ConstantVelocityFilter::Covariance::Identity());
+    const Filter filter({at.x_m, 0.0f, at.y_m, 0.0f}, 1e-4f * Filter::Covariance::Identity());
     likelihood.lay(filter, 1, made);
     return made;
   }

@@ -11,13 +11,11 @@
 namespace echofuse::hub {
 namespace {
 
-using estimation::Position;
-
 constexpr float kDt_s = 0.1f;
 
 template <class Tracker>
 Status feed(Tracker& tracker, int frame, link::Tracks& tracks) {
-  const Position z{1.0f + 0.1f * static_cast<float>(frame), 2.0f};
+  const Eigen::Vector2f z{1.0f + 0.1f * static_cast<float>(frame), 2.0f};
   return tracker.process({&z, 1}, kDt_s, tracks);
 }
 
@@ -83,7 +81,7 @@ TEST_CASE("taps come once a frame, and none of a refused one") {
   REQUIRE(feed(tracker, 0, tracks) == Status::kOk);
   CHECK(count.calls == 5);
   CHECK(count.last_size == 7 * tracks.tracks.size());
-  const Position bad{std::numeric_limits<float>::infinity(), 0.0f};
+  const Eigen::Vector2f bad{std::numeric_limits<float>::infinity(), 0.0f};
   CHECK(tracker.process({&bad, 1}, kDt_s, tracks) == Status::kInvalidInput);
   CHECK(tracker.process({}, 0.0f, tracks) == Status::kInvalidInput);
   CHECK(count.calls == 5);

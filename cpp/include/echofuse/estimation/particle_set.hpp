@@ -6,12 +6,6 @@
 
 namespace echofuse::estimation {
 
-/// A point in the plane.
-struct Position {
-  float x_m;
-  float y_m;
-};
-
 /// One hypothesis of a moving point, five floats in a row, so that a particle set is its own tap.
 struct Particle {
   float x_m;

@@ -3,25 +3,27 @@
 #include <Eigen/LU>
 
 namespace echofuse::estimation {
-namespace {
 
-using Measurement = Eigen::Matrix<float, 2, 1>;
-using Shown = Eigen::Matrix<float, 2, 4>;
-
-Shown shown_part() {
-  Shown shown = Shown::Zero();
-  shown(0, 0) = 1.0f;
-  shown(1, 2) = 1.0f;
-  return shown;
+template <int kDimension>
+ConstantVelocityFilter<kDimension> ConstantVelocityFilter<kDimension>::at(
+    const Vector& position, const PositionCovariance& position_covariance, const Vector& velocity,
+    float velocity_std_mps) {
+  ConstantVelocityFilter filter;
+  filter.state_(positions()) = position;
+  filter.state_(velocities()) = velocity;
+  filter.covariance_(positions(), positions()) = position_covariance;
+  for (int axis = 0; axis < 2 * kDimension; axis += 2)
+    filter.covariance_(axis + 1, axis + 1) = velocity_std_mps * velocity_std_mps;
+  return filter;
 }
 
-}  // namespace
-
-void ConstantVelocityFilter::predict(float dt_s, float acceleration_density_m2ps3, float velocity_decay) {
+template <int kDimension>
+void ConstantVelocityFilter<kDimension>::predict(float dt_s, float acceleration_density_m2ps3,
+                                                 float velocity_decay) {
   const float variance = acceleration_density_m2ps3 * dt_s;
   Covariance transition = Covariance::Identity();
   Covariance noise = Covariance::Zero();
-  for (const int axis : {0, 2}) {
+  for (int axis = 0; axis < 2 * kDimension; axis += 2) {
     transition(axis, axis + 1) = dt_s * velocity_decay;
     transition(axis + 1, axis + 1) = velocity_decay;
     noise(axis, axis) = variance * dt_s * dt_s / 3.0f;
@@ -32,11 +34,15 @@ void ConstantVelocityFilter::predict(float dt_s, float acceleration_density_m2ps
   covariance_ = (transition * covariance_ * transition.transpose() + noise).eval();
 }
 
-void ConstantVelocityFilter::update(const Position& measured, const Covariance2& measurement_covariance) {
-  const Shown shown = shown_part();
-  const Covariance2 inverse = innovation_covariance(measurement_covariance).inverse();
-  const Eigen::Matrix<float, 4, 2> gain = covariance_ * shown.transpose() * inverse;
-  const Measurement innovation(measured.x_m - state_(0), measured.y_m - state_(2));
+template <int kDimension>
+void ConstantVelocityFilter<kDimension>::update(const Vector& measured,
+                                                const PositionCovariance& measurement_covariance) {
+  Eigen::Matrix<float, kDimension, 2 * kDimension> shown;
+  shown.setZero();
+  for (int axis = 0; axis < kDimension; ++axis) shown(axis, 2 * axis) = 1.0f;
+  const PositionCovariance inverse = innovation_covariance(measurement_covariance).inverse();
+  const Eigen::Matrix<float, 2 * kDimension, kDimension> gain = covariance_ * shown.transpose() * inverse;
+  const Vector innovation = measured - position();
   const Covariance rest = Covariance::Identity() - gain * shown;
   state_ += gain * innovation;
   const Covariance updated =
@@ -44,28 +50,33 @@ void ConstantVelocityFilter::update(const Position& measured, const Covariance2&
   covariance_ = 0.5f * (updated + updated.transpose());
 }
 
-ConstantVelocityFilter::Covariance2 ConstantVelocityFilter::innovation_covariance(
-    const Covariance2& measurement_covariance) const {
-  Covariance2 position;
-  position << covariance_(0, 0), covariance_(0, 2), covariance_(2, 0), covariance_(2, 2);
-  return position + measurement_covariance;
+template <int kDimension>
+typename ConstantVelocityFilter<kDimension>::PositionCovariance
+ConstantVelocityFilter<kDimension>::innovation_covariance(
+    const PositionCovariance& measurement_covariance) const {
+  return position_covariance() + measurement_covariance;
 }
 
-float ConstantVelocityFilter::squared_distance(const Position& measured,
-                                               const Covariance2& measurement_covariance) const {
-  const Measurement innovation(measured.x_m - state_(0), measured.y_m - state_(2));
-  const Covariance2 inverse = innovation_covariance(measurement_covariance).inverse();
+template <int kDimension>
+float ConstantVelocityFilter<kDimension>::squared_distance(
+    const Vector& measured, const PositionCovariance& measurement_covariance) const {
+  const Vector innovation = measured - position();
+  const PositionCovariance inverse = innovation_covariance(measurement_covariance).inverse();
   return innovation.dot(inverse * innovation);
 }
 
-float ConstantVelocityFilter::variance_along(const Eigen::Vector2f& direction) const {
-  const State shown(direction(0), 0.0f, direction(1), 0.0f);
+template <int kDimension>
+float ConstantVelocityFilter<kDimension>::variance_along(const Vector& direction) const {
+  State shown = State::Zero();
+  shown(positions()) = direction;
   return shown.dot(covariance_ * shown);
 }
 
-void ConstantVelocityFilter::update_along(const Eigen::Vector2f& direction, float innovation_m,
-                                          float variance_m2) {
-  const State shown(direction(0), 0.0f, direction(1), 0.0f);
+template <int kDimension>
+void ConstantVelocityFilter<kDimension>::update_along(const Vector& direction, float innovation_m,
+                                                      float variance_m2) {
+  State shown = State::Zero();
+  shown(positions()) = direction;
   const State with_shown = covariance_ * shown;
   const State gain = with_shown / (shown.dot(with_shown) + variance_m2);
   const Covariance rest = Covariance::Identity() - gain * shown.transpose();
@@ -73,5 +84,8 @@ void ConstantVelocityFilter::update_along(const Eigen::Vector2f& direction, floa
   const Covariance updated = rest * covariance_ * rest.transpose() + variance_m2 * gain * gain.transpose();
   covariance_ = 0.5f * (updated + updated.transpose());
 }
+
+template class ConstantVelocityFilter<2>;
+template class ConstantVelocityFilter<3>;
 
 }  // namespace echofuse::estimation

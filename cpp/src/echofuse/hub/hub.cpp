@@ -97,7 +97,7 @@ Status SensorRadarHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
 Status SensorRadarHub::track(float dt_s, link::Tracks& tracks) {
   if (config_.tracker == Tracker::kRange)
     return range_tracker_.process(frame_.detections.span(), dt_s, tracks);
-  BoundedVector<estimation::Position, kMaxPointsPerFrame> positions;
+  BoundedVector<Eigen::Vector2f, kMaxPointsPerFrame> positions;
   for (const PointCluster& point : points_) ECHOFUSE_CHECK(positions.try_push_back({point.x_m, point.y_m}));
   if (config_.tracker == Tracker::kPhd) return phd_tracker_.process(positions.span(), dt_s, tracks);
   return kalman_tracker_.process(positions.span(), dt_s, tracks);

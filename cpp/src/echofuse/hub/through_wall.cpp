@@ -234,7 +234,7 @@ Status ThroughWallHub::track(float dt_s, link::Tracks& tracks) {
     }
     return Status::kOk;
   }
-  BoundedVector<estimation::Position, kMaxPointsPerFrame> positions;
+  BoundedVector<Eigen::Vector2f, kMaxPointsPerFrame> positions;
   for (const LocatedPoint& point : points_)
     ECHOFUSE_CHECK(positions.try_push_back({point.position.x_m + tx_.x_m, point.position.y_m + tx_.y_m}));
   return kalman_tracker_.process(positions.span(), dt_s, tracks);

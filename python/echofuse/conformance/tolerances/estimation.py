@@ -7,8 +7,8 @@ ROWS: dict[str, Tolerance] = {
         5e-7, 0.0, "a polynomial of degree 7 in float32, relative to each value"
     ),
     "estimation.assignment.cost": Tolerance(1e-6, 0.0, "32 costs, summed and compared in float32"),
-    "estimation.kalman.state": Tolerance(3e-6, 1e-6, "20 updates of 4 x 4 products in float32"),
-    "estimation.kalman.covariance": Tolerance(1e-5, 0.0, "20 Joseph updates of 4 x 4 products in float32"),
+    "estimation.kalman.state": Tolerance(3e-6, 1e-6, "40 updates of up to 6 x 6 products in float32"),
+    "estimation.kalman.covariance": Tolerance(1e-5, 0.0, "40 Joseph updates of up to 6 x 6, in float32"),
     "estimation.mixture.position": Tolerance(
         0.0, 1e-4, "[m] a sum over 600 particles, 20 m from the origin, a step"
     ),

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
+#include "echofuse/core/eigen.hpp"
 #include "echofuse/core/span.hpp"
 #include "echofuse/core/status.hpp"
 #include "echofuse/core/tap.hpp"
-#include "echofuse/estimation/particle_set.hpp"
 #include "echofuse/hub/track/track_manager.hpp"
 #include "echofuse/link/messages.hpp"
 
@@ -23,7 +23,7 @@ class KalmanTracker {
   /// measurements: (m,) [m]. dt_s: [s] > 0 since the last frame. Shows the tap kTracks.
   /// kInvalidInput: a measurement is not finite or dt_s is not positive; nothing changes.
   /// kTruncated: only the first kMaxPointsPerFrame were used, or a track could not begin.
-  Status process(Span<const estimation::Position> measurements, float dt_s, link::Tracks& tracks);
+  Status process(Span<const Eigen::Vector2f> measurements, float dt_s, link::Tracks& tracks);
 
   void set_tap_sink(const TapSink& sink) { sink_ = sink; }
   const TrackManager& manager() const { return manager_; }

@@ -80,7 +80,7 @@ class PathTracker {
     std::int32_t misses = 0;
     int lone = 0;
     float silent_time_s = 0.0f;
-    estimation::ConstantVelocityFilter filter;
+    estimation::ConstantVelocityFilter<2> filter;
   };
   struct Prediction {  ///< of each receiver's path
     std::array<float, kMaxArrayReceivers> path_m{};

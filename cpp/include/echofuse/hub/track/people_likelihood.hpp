@@ -48,7 +48,7 @@ class PeopleLikelihood {
 
   /// Puts a filter's state into the newest frame of a trail; frames before the track began, `age` frames ago
   /// counting the newest as 1, are filled in straight back, the less sure the further.
-  void lay(const estimation::ConstantVelocityFilter& filter, int age, Trail& trail) const;
+  void lay(const estimation::ConstantVelocityFilter<2>& filter, int age, Trail& trail) const;
 
   /// Logarithm of the likelihood of the window's detections, up to what is the same for all sets.
   float score(People people) const;

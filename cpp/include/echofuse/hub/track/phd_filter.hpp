@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "echofuse/core/bounded_vector.hpp"
+#include "echofuse/core/eigen.hpp"
 #include "echofuse/core/limits.hpp"
 #include "echofuse/core/random.hpp"
 #include "echofuse/core/span.hpp"
@@ -60,7 +61,7 @@ class PhdFilter {
 
   /// kInvalidInput: a measurement is not finite; nothing changes. kTruncated: the first kMaxPointsPerFrame
   /// used.
-  Status update(Span<const estimation::Position> measurements);
+  Status update(Span<const Eigen::Vector2f> measurements);
 
   /// Draws the particles of the next frame; the mass stays.
   Status resample();
@@ -80,8 +81,8 @@ class PhdFilter {
   static constexpr std::size_t kMaxAveragedFrames = 16;
 
   /// [1/m^2] L(z); parts_ holds p_D g(z|x_i) w_i afterwards.
-  float explain(const estimation::Position& z);
-  void add_newborn(const estimation::Position& z, float mass, std::size_t count);
+  float explain(const Eigen::Vector2f& z);
+  void add_newborn(const Eigen::Vector2f& z, float mass, std::size_t count);
   void count_targets();
 
   PhdConfig config_{};

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
+#include "echofuse/core/eigen.hpp"
 #include "echofuse/core/span.hpp"
 #include "echofuse/core/status.hpp"
 #include "echofuse/core/tap.hpp"
 #include "echofuse/estimation/mixture_em.hpp"
-#include "echofuse/estimation/particle_set.hpp"
 #include "echofuse/hub/track/phd_filter.hpp"
 #include "echofuse/hub/track/track_manager.hpp"
 #include "echofuse/link/messages.hpp"
@@ -26,7 +26,7 @@ class PhdTracker {
   /// Shows the taps kPredicted, kUpdated, kPeaks, kResampled, kTracks.
   /// kInvalidInput: a measurement is not finite or dt_s is not positive; nothing changes.
   /// kTruncated: only the first kMaxPointsPerFrame were used, or a track could not begin.
-  Status process(Span<const estimation::Position> measurements, float dt_s, link::Tracks& tracks);
+  Status process(Span<const Eigen::Vector2f> measurements, float dt_s, link::Tracks& tracks);
 
   void set_tap_sink(const TapSink& sink) { sink_ = sink; }
   const PhdFilter& phd() const { return phd_; }

@@ -53,7 +53,7 @@ class RangeTracker {
     float score = 0.0f;  ///< of an unconfirmed one, by itself
     int n_own = 0;       ///< nodes with a detection of its own in this frame
     std::int32_t frames_since_update = 0;
-    estimation::ConstantVelocityFilter filter;
+    estimation::ConstantVelocityFilter<2> filter;
     Trail trail;
   };
 

@@ -61,7 +61,7 @@ struct ManagedTrack {
   float confirmed_time_s = 0.0f;  ///< [s] for which it was updated since its confirmation
   float silent_time_s = 0.0f;     ///< [s] since its last point
   float motion = 1.0f;            ///< [1] what is left of the motion of a silent track
-  estimation::ConstantVelocityFilter filter;
+  estimation::ConstantVelocityFilter<2> filter;
 };
 
 /// Tracks from the points of each frame, by their identities and states (section V-E of the sensor-radar
@@ -96,7 +96,7 @@ class TrackManager {
   bool hit(ManagedTrack& track, const TrackEstimate& point, float dt_s) const;
   bool miss(ManagedTrack& track, float dt_s) const;
   bool begin(const TrackEstimate& point);
-  estimation::ConstantVelocityFilter filter_of(const TrackEstimate& point) const;
+  estimation::ConstantVelocityFilter<2> filter_of(const TrackEstimate& point) const;
   void report(link::Tracks& tracks) const;
 
   TrackManagerConfig config_{};

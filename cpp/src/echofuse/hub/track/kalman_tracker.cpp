@@ -15,12 +15,11 @@ Status KalmanTracker::configure(TrackManagerConfig config) {
 
 void KalmanTracker::reset() { manager_.reset(); }
 
-Status KalmanTracker::process(Span<const estimation::Position> measurements, float dt_s,
-                              link::Tracks& tracks) {
+Status KalmanTracker::process(Span<const Eigen::Vector2f> measurements, float dt_s, link::Tracks& tracks) {
   BoundedVector<TrackEstimate, kMaxPointsPerFrame> points;
-  for (const estimation::Position& z : measurements.first(std::min(measurements.size(), kMaxPointsPerFrame)))
+  for (const Eigen::Vector2f& z : measurements.first(std::min(measurements.size(), kMaxPointsPerFrame)))
     ECHOFUSE_CHECK(points.try_push_back(
-        {z.x_m, z.y_m, 0.0f, 0.0f, measurement_variance_m2_, 0.0f, measurement_variance_m2_}));
+        {z.x(), z.y(), 0.0f, 0.0f, measurement_variance_m2_, 0.0f, measurement_variance_m2_}));
   const Status status = manager_.process(points.span(), dt_s, tracks);
   if (status != Status::kOk && status != Status::kTruncated) return status;
   show_tracks(sink_, tracks);

@@ -11,7 +11,7 @@ constexpr float kMinDepth_m = 0.02f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kMaxWindow = 32;  ///< bits of the updates
 
-using estimation::ConstantVelocityFilter;
+using Filter = estimation::ConstantVelocityFilter<2>;
 
 bool positive(float value) { return value > 0.0f && std::isfinite(value); }
 bool not_negative(float value) { return value >= 0.0f && std::isfinite(value); }
@@ -123,7 +123,7 @@ Status PathTracker::begin(const LineFix& fix) {
     ++dropped_births_;
     return Status::kTruncated;
   }
-  ConstantVelocityFilter::Covariance covariance = ConstantVelocityFilter::Covariance::Zero();
+  Filter::Covariance covariance = Filter::Covariance::Zero();
   const float shared = config_.common_path_std_m * config_.common_path_std_m / 4.0f;
   covariance(0, 0) = fix.covariance_xx_m2 + shared;
   covariance(0, 2) = covariance(2, 0) = fix.covariance_xy_m2;
@@ -168,7 +168,7 @@ void PathTracker::predict(float dt_s) {
   for (TrackState& track : tracks_) {
     const bool silent = track.confirmed && track.misses > 0;
     track.filter.predict(dt_s, config_.acceleration_density_m2ps3, silent ? fade : 1.0f);
-    ConstantVelocityFilter::State state = track.filter.state();
+    Filter::State state = track.filter.state();
     const auto hold = [&state](int axis, float low, float high) {
       if (state(axis) >= low && state(axis) <= high) return;
       state(axis) = std::clamp(state(axis), low, high);
@@ -268,8 +268,8 @@ bool PathTracker::add(const Prediction& prediction, std::size_t receiver, int tr
 }
 
 PathTracker::Prediction PathTracker::predicted(const TrackState& track) const {
-  const estimation::Position at = track.filter.position();
-  const Point position{at.x_m, std::max(at.y_m, kMinDepth_m)};
+  const Eigen::Vector2f at = track.filter.position();
+  const Point position{at.x(), std::max(at.y(), kMinDepth_m)};
   const AntennaRay tx = antenna_ray(wall_, position, 0.0f);
   Prediction prediction;
   for (std::size_t r = 0; r < n_receivers_; ++r) {
@@ -292,7 +292,7 @@ void PathTracker::take(TrackState& track, const Traces& traces) const {
     innovation_m[n] = paths_[index(r, traces[r])].path_m - prediction.path_m[r];
     gradient[n++] = prediction.gradient[r];
   }
-  const estimation::Position before = track.filter.position();
+  const Eigen::Vector2f before = track.filter.position();
   const float own = config_.path_std_m * config_.path_std_m;
   const float common = config_.common_path_std_m * config_.common_path_std_m;
   for (std::size_t row = 0; row < n; ++row) {
@@ -306,8 +306,7 @@ void PathTracker::take(TrackState& track, const Traces& traces) const {
       direction += weight * gradient[i];
       innovation += weight * innovation_m[i];
     }
-    const estimation::Position now = track.filter.position();
-    innovation -= direction.dot(Eigen::Vector2f(now.x_m - before.x_m, now.y_m - before.y_m));
+    innovation -= direction.dot(track.filter.position() - before);
     const float variance = own + (row == 0 ? static_cast<float>(n) * common : 0.0f);
     take_along(track, direction, innovation, variance, row > 0);
   }
@@ -366,7 +365,7 @@ bool PathTracker::lives(TrackState& track, float dt_s) const {
 /// Two tracks of one person.
 bool PathTracker::same(const TrackState& one, const TrackState& other) const {
   if (!one.confirmed || !other.confirmed) return false;
-  const ConstantVelocityFilter::State apart = one.filter.state() - other.filter.state();
+  const Filter::State apart = one.filter.state() - other.filter.state();
   const float distance = std::sqrt(apart(0) * apart(0) + apart(2) * apart(2));
   const float speed = std::sqrt(apart(1) * apart(1) + apart(3) * apart(3));
   return distance < config_.merge_distance_m && speed < config_.merge_speed_mps;

@@ -87,7 +87,7 @@ float PeopleLikelihood::visible_path(const Point& place, std::size_t node, Point
   return std::max(path, baseline_m_[node] + config_.nearest_path_m);
 }
 
-void PeopleLikelihood::lay(const estimation::ConstantVelocityFilter& filter, int age, Trail& trail) const {
+void PeopleLikelihood::lay(const estimation::ConstantVelocityFilter<2>& filter, int age, Trail& trail) const {
   const auto& x = filter.state();
   const auto& p = filter.covariance();
   std::size_t slot = newest_;

@@ -12,7 +12,6 @@ namespace echofuse::hub {
 namespace {
 
 using estimation::Particle;
-using estimation::Position;
 
 bool within(float value, float least, float most) { return value >= least && value <= most; }
 
@@ -75,10 +74,10 @@ Status PhdFilter::predict(float dt_s) {
   return Status::kOk;
 }
 
-Status PhdFilter::update(Span<const Position> measurements) {
+Status PhdFilter::update(Span<const Eigen::Vector2f> measurements) {
   if (!configured_) return Status::kNotConfigured;
-  for (const Position& z : measurements)
-    if (!std::isfinite(z.x_m) || !std::isfinite(z.y_m)) return Status::kInvalidInput;
+  for (const Eigen::Vector2f& z : measurements)
+    if (!z.allFinite()) return Status::kInvalidInput;
   const std::size_t n_used = std::min(measurements.size(), kMaxPointsPerFrame);
   n_persistent_ = std::min(n_particles_, kMaxParticles);
   n_particles_ = n_persistent_;
@@ -87,7 +86,7 @@ Status PhdFilter::update(Span<const Position> measurements) {
   for (std::size_t i = 0; i < n_persistent_; ++i)
     updated_[i] = (1.0f - config_.detection_probability) * particles_[i].weight;
   const float birth_per_m2 = config_.birth_per_frame / config_.area_m2;
-  for (const Position& z : measurements.first(n_used)) {
+  for (const Eigen::Vector2f& z : measurements.first(n_used)) {
     const float total = explain(z);
     CompensatedSum explained;
     for (std::size_t i = 0; i < n_persistent_; ++i) {
@@ -96,7 +95,7 @@ Status PhdFilter::update(Span<const Position> measurements) {
       updated_[i] += share;
       explained.add(share);
     }
-    ECHOFUSE_CHECK(seeds_.try_push_back({z.x_m, z.y_m, explained.value()}));
+    ECHOFUSE_CHECK(seeds_.try_push_back({z.x(), z.y(), explained.value()}));
     const auto allowed =
         std::min(static_cast<std::size_t>(config_.newborn_per_measurement), kMaxNewbornParticles / n_used);
     add_newborn(z, birth_per_m2 / total, allowed);
@@ -107,14 +106,14 @@ Status PhdFilter::update(Span<const Position> measurements) {
   return n_used < measurements.size() ? Status::kTruncated : Status::kOk;
 }
 
-float PhdFilter::explain(const Position& z) {
+float PhdFilter::explain(const Eigen::Vector2f& z) {
   const float inverse_variance = 1.0f / (config_.measurement_std_m * config_.measurement_std_m);
   const float scale = config_.detection_probability * inverse_variance / (2.0f * kPi);
   CompensatedSum sum;
   for (std::size_t i = 0; i < n_persistent_; ++i) {
     const Particle& particle = particles_[i];
-    const float dx = particle.x_m - z.x_m;
-    const float dy = particle.y_m - z.y_m;
+    const float dx = particle.x_m - z.x();
+    const float dy = particle.y_m - z.y();
     const float squared = (dx * dx + dy * dy) * inverse_variance;
     parts_[i] = 0.0f;
     if (squared > estimation::kGaussianCutSquared) continue;
@@ -124,12 +123,12 @@ float PhdFilter::explain(const Position& z) {
   return (config_.clutter_per_frame + config_.birth_per_frame) / config_.area_m2 + sum.value();
 }
 
-void PhdFilter::add_newborn(const Position& z, float mass, std::size_t count) {
+void PhdFilter::add_newborn(const Eigen::Vector2f& z, float mass, std::size_t count) {
   const float weight = mass / static_cast<float>(count);
   for (std::size_t i = 0; i < count; ++i) {
     Particle& particle = particles_[n_particles_++];
-    particle.x_m = z.x_m + config_.measurement_std_m * random_.normal();
-    particle.y_m = z.y_m + config_.measurement_std_m * random_.normal();
+    particle.x_m = z.x() + config_.measurement_std_m * random_.normal();
+    particle.y_m = z.y() + config_.measurement_std_m * random_.normal();
     particle.vx_mps = config_.newborn_velocity_std_mps * random_.normal();
     particle.vy_mps = config_.newborn_velocity_std_mps * random_.normal();
     particle.weight = weight;

@@ -8,9 +8,9 @@
 namespace echofuse::hub {
 namespace {
 
-bool is_finite(Span<const estimation::Position> measurements) {
-  for (const estimation::Position& z : measurements)
-    if (!std::isfinite(z.x_m) || !std::isfinite(z.y_m)) return false;
+bool is_finite(Span<const Eigen::Vector2f> measurements) {
+  for (const Eigen::Vector2f& z : measurements)
+    if (!z.allFinite()) return false;
   return true;
 }
 
@@ -33,7 +33,7 @@ void PhdTracker::reset() {
   mixture_.components.clear();
 }
 
-Status PhdTracker::process(Span<const estimation::Position> measurements, float dt_s, link::Tracks& tracks) {
+Status PhdTracker::process(Span<const Eigen::Vector2f> measurements, float dt_s, link::Tracks& tracks) {
   tracks.tracks.clear();
   if (!is_finite(measurements)) return Status::kInvalidInput;
   if (const Status status = phd_.predict(dt_s); status != Status::kOk) return status;

@@ -10,7 +10,7 @@
 namespace echofuse::hub {
 namespace {
 
-using estimation::ConstantVelocityFilter;
+using Filter = estimation::ConstantVelocityFilter<2>;
 
 constexpr float kOutside_m = 0.2f;      ///< [m] a track may leave the area by so much
 constexpr float kDouble_m = 0.3f;       ///< [m] two confirmed tracks nearer than this
@@ -21,13 +21,10 @@ constexpr float kLeastSureness = 0.05f;                          ///< [1] a less
 constexpr int kNewestOnly = static_cast<int>(kMaxWindowFrames);  ///< [frame] an age: nothing to be filled in
 constexpr int kMaxBirthPlaces = 24;                              ///< [1] looked at in a frame
 
-float distance_m(const estimation::Position& a, const estimation::Position& b) {
-  const float x = a.x_m - b.x_m;
-  const float y = a.y_m - b.y_m;
-  return std::sqrt(x * x + y * y);
+Point place_of(const Filter& filter) {
+  const Eigen::Vector2f at = filter.position();
+  return {at.x(), at.y()};
 }
-
-float length(float x, float y) { return std::sqrt(x * x + y * y); }
 
 bool within(float value, float least, float most) { return value >= least && value <= most; }
 
@@ -116,9 +113,8 @@ void RangeTracker::update_confirmed() {
   std::array<PeopleLikelihood::Claim, kMaxTargets> claims;
   for (std::size_t node = 0; node < n_nodes_; ++node) {
     for (std::size_t i = 0; i < people.size(); ++i) {
-      const estimation::Position at = tracks_[i].filter.position();
       Point gradient;
-      (void)likelihood_.visible_path({at.x_m, at.y_m}, node, &gradient);
+      (void)likelihood_.visible_path(place_of(tracks_[i].filter), node, &gradient);
       stds_m[i] = std::sqrt(tracks_[i].filter.variance_along({gradient.x_m, gradient.y_m}) + noise);
     }
     likelihood_.claim({people.data(), people.size()}, {stds_m.data(), people.size()}, node,
@@ -126,9 +122,8 @@ void RangeTracker::update_confirmed() {
     for (std::size_t i = 0; i < people.size(); ++i) {
       if (claims[i].detection < 0 || claims[i].sureness < kLeastSureness) continue;
       RangeTrack& track = tracks_[i];
-      const estimation::Position at = track.filter.position();
       Point gradient;
-      const float path = likelihood_.visible_path({at.x_m, at.y_m}, node, &gradient);
+      const float path = likelihood_.visible_path(place_of(track.filter), node, &gradient);
       if (path < 0.0f) continue;
       const float measured = likelihood_.paths(node)[static_cast<std::size_t>(claims[i].detection)];
       track.filter.update_along({gradient.x_m, gradient.y_m}, measured - path,
@@ -144,9 +139,8 @@ float RangeTracker::follow(RangeTrack& track) const {
   float score = 0.0f;
   track.n_own = 0;
   for (std::size_t node = 0; node < n_nodes_; ++node) {
-    const estimation::Position at = track.filter.position();
     Point gradient;
-    const float path = likelihood_.visible_path({at.x_m, at.y_m}, node, &gradient);
+    const float path = likelihood_.visible_path(place_of(track.filter), node, &gradient);
     if (path < 0.0f) continue;
     const Span<const float> paths = likelihood_.paths(node);
     const int own = nearest(paths, path, config_.gate_m);
@@ -166,24 +160,22 @@ float RangeTracker::follow(RangeTrack& track) const {
 
 /// It is a person's place and, while it is unconfirmed, speed and score.
 bool RangeTracker::lives(const RangeTrack& track) const {
-  const auto& state = track.filter.state();
-  if (!within(state(0), area_.min_x_m - kOutside_m, area_.max_x_m + kOutside_m)) return false;
-  if (!within(state(2), area_.min_y_m - kOutside_m, area_.max_y_m + kOutside_m)) return false;
+  const Point at = place_of(track.filter);
+  if (!within(at.x_m, area_.min_x_m - kOutside_m, area_.max_x_m + kOutside_m)) return false;
+  if (!within(at.y_m, area_.min_y_m - kOutside_m, area_.max_y_m + kOutside_m)) return false;
   if (track.confirmed) return true;
-  return track.score >= config_.drop_score && length(state(1), state(3)) <= config_.max_speed_mps;
+  return track.score >= config_.drop_score && track.filter.velocity().norm() <= config_.max_speed_mps;
 }
 
 /// Is a better track the same person.
 bool RangeTracker::crowded(std::size_t index) const {
   const RangeTrack& track = tracks_[index];
-  const auto& own = track.filter.state();
   for (std::size_t i = 0; i < index; ++i) {
     const RangeTrack& better = tracks_[i];
-    const float distance = distance_m(better.filter.position(), track.filter.position());
+    const float distance = (better.filter.position() - track.filter.position()).norm();
     if (!track.confirmed && distance < config_.merge_distance_m) return true;
-    const auto& other = better.filter.state();
-    if (track.confirmed && distance < kDouble_m && length(own(1) - other(1), own(3) - other(3)) < kDouble_mps)
-      return true;
+    const float apart_mps = (better.filter.velocity() - track.filter.velocity()).norm();
+    if (track.confirmed && distance < kDouble_m && apart_mps < kDouble_mps) return true;
   }
   return false;
 }
@@ -240,14 +232,13 @@ bool RangeTracker::begin_tracks() {
 
 /// False when there is no room for a track that should begin.
 bool RangeTracker::begin_at(const Point& place) {
+  const Eigen::Vector2f at(place.x_m, place.y_m);
   for (const RangeTrack& track : tracks_)
-    if (distance_m(track.filter.position(), {place.x_m, place.y_m}) < config_.birth_exclusion_m) return true;
-  const float position = config_.newborn_position_std_m * config_.newborn_position_std_m;
-  const float velocity = config_.newborn_velocity_std_mps * config_.newborn_velocity_std_mps;
+    if ((track.filter.position() - at).norm() < config_.birth_exclusion_m) return true;
+  const float variance_m2 = config_.newborn_position_std_m * config_.newborn_position_std_m;
   RangeTrack track;
-  track.filter = ConstantVelocityFilter(
-      ConstantVelocityFilter::State(place.x_m, 0.0f, place.y_m, 0.0f),
-      ConstantVelocityFilter::State(position, velocity, position, velocity).asDiagonal());
+  track.filter = Filter::at(at, variance_m2 * Eigen::Matrix2f::Identity(), Eigen::Vector2f::Zero(),
+                            config_.newborn_velocity_std_mps);
   const float score = follow(track);
   if (!(score >= config_.birth_score) || track.n_own == 0) return true;  // 0: where all nodes are blind
   track.score = kBirthShare * score;

@@ -8,7 +8,7 @@
 namespace echofuse::hub {
 namespace {
 
-using estimation::ConstantVelocityFilter;
+using Filter = estimation::ConstantVelocityFilter<2>;
 using estimation::kUnassigned;
 using link::TrackState;
 
@@ -21,15 +21,10 @@ bool is_finite(const TrackEstimate& p) {
 }
 
 float distance_m(const ManagedTrack& track, const TrackEstimate& point) {
-  const estimation::Position at = track.filter.position();
-  const float dx = point.x_m - at.x_m;
-  const float dy = point.y_m - at.y_m;
-  return std::sqrt(dx * dx + dy * dy);
+  return (Eigen::Vector2f(point.x_m, point.y_m) - track.filter.position()).norm();
 }
 
-ConstantVelocityFilter::Covariance2 isotropic(float std_m) {
-  return ConstantVelocityFilter::Covariance2::Identity() * (std_m * std_m);
-}
+Eigen::Matrix2f isotropic(float std_m) { return Eigen::Matrix2f::Identity() * (std_m * std_m); }
 
 }  // namespace
 
@@ -216,14 +211,12 @@ bool TrackManager::begin(const TrackEstimate& point) {
   return true;
 }
 
-ConstantVelocityFilter TrackManager::filter_of(const TrackEstimate& point) const {
-  const ConstantVelocityFilter::State state(point.x_m, point.vx_mps, point.y_m, point.vy_mps);
-  ConstantVelocityFilter::Covariance covariance = ConstantVelocityFilter::Covariance::Zero();
-  covariance(0, 0) = point.covariance_xx_m2;
-  covariance(0, 2) = covariance(2, 0) = point.covariance_xy_m2;
-  covariance(2, 2) = point.covariance_yy_m2;
-  covariance(1, 1) = covariance(3, 3) = config_.velocity_std_mps * config_.velocity_std_mps;
-  return {state, covariance};
+Filter TrackManager::filter_of(const TrackEstimate& point) const {
+  Eigen::Matrix2f covariance;
+  covariance << point.covariance_xx_m2, point.covariance_xy_m2,  //
+      point.covariance_xy_m2, point.covariance_yy_m2;
+  return Filter::at({point.x_m, point.y_m}, covariance, {point.vx_mps, point.vy_mps},
+                    config_.velocity_std_mps);
 }
 
 void TrackManager::report(link::Tracks& tracks) const {
