@@ -69,7 +69,7 @@ test-fast: build test-cpp
 	$(PYTHON) -m pytest -q -n auto -m 'not slow'
 
 # Inputs that are worth keeping go to build/fuzz/corpus; what finds something is left in build/fuzz/findings.
-FUZZERS := frames detections tracks node_health heartbeat synchronization raw_scan
+FUZZERS := frames detections tracks node_health heartbeat synchronization raw_scan spatial_tracks
 fuzz: .venv/.setup-fuzz
 	tools/fuzz -runs=10000000 $(FUZZERS)
 	tools/fuzz -runs=1000000 requests  # each of which searches 250 names

@@ -173,26 +173,28 @@ void bind_detections(py::module_& m) {
       "(status, node_id, frame, time_us, detections)");
 }
 
-void bind_tracks(py::module_& m) {
-  m.def(
-      "encode_tracks",
-      [](std::int64_t time_us, std::uint32_t frame, const ArrayOf<link::Track>& rows) {
-        link::Tracks tracks;
-        tracks.time_us = time_us;
-        tracks.frame = frame;
-        for (const link::Track& track : as_span(rows, "tracks"))
-          if (!tracks.tracks.try_push_back(track)) throw py::value_error("too many tracks");
-        return encoded([&](Span<std::uint8_t> out) { return link::encode(tracks, out); });
-      },
-      py::arg("time_us"), py::arg("frame"), py::arg("tracks").noconvert());
-  m.def(
-      "decode_tracks",
-      [](const std::string& payload) {
-        link::Tracks tracks;
-        const Status status = link::decode(bytes_of(payload), tracks);
-        return py::make_tuple(status, tracks.time_us, tracks.frame, to_array(tracks));
-      },
-      py::arg("payload"), "(status, time_us, frame, tracks)");
+using TracksEncoder = std::size_t (*)(const link::Tracks&, Span<std::uint8_t>);
+using TracksDecoder = Status (*)(Span<const std::uint8_t>, link::Tracks&);
+
+/// `encode_NAME` and `decode_NAME` of one of the messages that carry tracks.
+void bind_tracks(py::module_& m, const std::string& name, TracksEncoder encode, TracksDecoder decode) {
+  m.def(("encode_" + name).c_str(),
+        [encode](std::int64_t time_us, std::uint32_t frame, const ArrayOf<link::Track>& rows) {
+          link::Tracks tracks;
+          tracks.time_us = time_us;
+          tracks.frame = frame;
+          for (const link::Track& track : as_span(rows, "tracks"))
+            if (!tracks.tracks.try_push_back(track)) throw py::value_error("too many tracks");
+          return encoded([&](Span<std::uint8_t> out) { return encode(tracks, out); });
+        },
+        py::arg("time_us"), py::arg("frame"), py::arg("tracks").noconvert());
+  m.def(("decode_" + name).c_str(),
+        [decode](const std::string& payload) {
+          link::Tracks tracks;
+          const Status status = decode(bytes_of(payload), tracks);
+          return py::make_tuple(status, tracks.time_us, tracks.frame, to_array(tracks));
+        },
+        py::arg("payload"), "(status, time_us, frame, tracks)");
 }
 
 }  // namespace
@@ -200,7 +202,8 @@ void bind_tracks(py::module_& m) {
 void bind_link(py::module_& m) {
   bind_frames(m);
   bind_detections(m);
-  bind_tracks(m);
+  bind_tracks(m, "tracks", &link::encode, &link::decode);
+  bind_tracks(m, "spatial_tracks", &link::encode_spatial, &link::decode_spatial);
   m.def(
       "node_registers", [] { return register_names(node::config_registers()); },
       "Names of a node's configuration on the link.");

@@ -39,6 +39,8 @@ inline constexpr TapLayout kTapLayouts[] = {
     {TapId::kPeaks, "peaks", 5},
     {TapId::kTracks, "tracks", 7},
     {TapId::kAssociated, "associated", 0},
+    {TapId::kSpatialPoints, "points", 5},
+    {TapId::kSpatialTracks, "tracks", 9},
 };
 
 /// Copies the taps of one call into a dictionary by name, and takes the sink out again, whatever happens.

@@ -72,9 +72,18 @@ class HubFirmware {
       (void)hub_.poll(now_us, tracks_, closed);  // kTruncated: what was cut it counts
       if (!closed) return;
       machine_.profiler.end();
-      machine_.endpoint.publish(machine_.endpoint.ports().tracks, tracks_.frame,
-                                link::encode(tracks_, machine_.endpoint.payload_buffer()));
+      report();
     }
+  }
+
+  void report() {
+    link::Endpoint& endpoint = machine_.endpoint;
+    if constexpr (Pipeline::kSpatial)
+      endpoint.publish(endpoint.ports().spatial_tracks, tracks_.frame,
+                       link::encode_spatial(tracks_, endpoint.payload_buffer()));
+    else
+      endpoint.publish(endpoint.ports().tracks, tracks_.frame,
+                       link::encode(tracks_, endpoint.payload_buffer()));
   }
 
   /// The hub is the master of time: each message tells when the one before was sent.

@@ -17,6 +17,7 @@ struct SensorRadar {
   using Hub = hub::SensorRadarHub;
   using Config = hub::SensorRadarHubConfig;
   static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarHub;
+  static constexpr bool kSpatial = false;  ///< tells heights too, so SpatialTracks and not Tracks
   static constexpr const char* kName = "echofuse.sensor_radar.hub";
 
   static Span<const link::RegisterField> registers() { return hub::config_registers(); }
@@ -50,6 +51,7 @@ struct ThroughWall {
   using Hub = hub::ThroughWallHub;
   using Config = hub::ThroughWallHubConfig;
   static constexpr link::MachineKind kKind = link::MachineKind::kThroughWallHub;
+  static constexpr bool kSpatial = false;
   static constexpr const char* kName = "echofuse.through_wall.hub";
 
   static Span<const link::RegisterField> registers() { return hub::through_wall_registers(); }

@@ -131,8 +131,10 @@ __all__: list[str] = [
     "crc16",
     "crc32c",
     "decode_detections",
+    "decode_spatial_tracks",
     "decode_tracks",
     "encode_detections",
+    "encode_spatial_tracks",
     "encode_tracks",
     "gaussian_kernel",
     "hub_registers",
@@ -4695,6 +4697,11 @@ def decode_detections(
     (status, node_id, frame, time_us, detections)
     """
 
+def decode_spatial_tracks(payload: str) -> tuple[Status, int, int, numpy.typing.NDArray[numpy.void]]:
+    """
+    (status, time_us, frame, tracks)
+    """
+
 def decode_tracks(payload: str) -> tuple[Status, int, int, numpy.typing.NDArray[numpy.void]]:
     """
     (status, time_us, frame, tracks)
@@ -4704,6 +4711,11 @@ def encode_detections(
     time_us: typing.SupportsInt | typing.SupportsIndex,
     delay_s: numpy.typing.NDArray[numpy.float32],
     weight: numpy.typing.NDArray[numpy.float32],
+) -> bytes: ...
+def encode_spatial_tracks(
+    time_us: typing.SupportsInt | typing.SupportsIndex,
+    frame: typing.SupportsInt | typing.SupportsIndex,
+    tracks: numpy.typing.NDArray[numpy.void],
 ) -> bytes: ...
 def encode_tracks(
     time_us: typing.SupportsInt | typing.SupportsIndex,
@@ -4862,6 +4874,8 @@ TAPS: dict = {
     38: ("peaks", 5),
     39: ("tracks", 7),
     40: ("associated", 0),
+    41: ("points", 5),
+    42: ("tracks", 9),
 }
 THROUGH_WALL_HUB_BYTES: int = 25024
 THROUGH_WALL_NODE_BYTES: int = 49200

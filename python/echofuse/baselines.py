@@ -27,7 +27,7 @@ class BaselineFrame:
     """What the simpler ways made of one frame."""
 
     tracks: NDArray[np.void]
-    points: Mapping[str, Rows] = field(default_factory=dict)  # (n, 4) x, y [m], members, weight, by way
+    points: Mapping[str, Rows] = field(default_factory=dict)  # as FrameOutput.points, by way
 
 
 class Baseline(Protocol):

@@ -12,9 +12,12 @@ if TYPE_CHECKING:
     from echofuse.emulation.run import Emulation
     from echofuse.site import Site
 
-#: One row a point that the tracker was given. [m]
+#: One row a point that the tracker was given. [m] z_m is NaN where the pipeline is planar.
 POINT_DTYPE = np.dtype(
-    [("frame", "i4"), ("time_us", "i8"), ("x_m", "f4"), ("y_m", "f4"), ("members", "f4"), ("weight", "f4")]
+    [
+        *(("frame", "i4"), ("time_us", "i8")),
+        *((name, "f4") for name in ("x_m", "y_m", "z_m", "members", "weight")),
+    ]
 )
 
 #: A row a detection in a through-wall hub's frame. node: of the site's nodes; owner: the track that took it,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.baselines import baseline_of
-from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, Recording
+from echofuse.recording import DETECTION_DTYPE, TRACK_DTYPE, Recording, frame_rows
 from echofuse.result import ASSOCIATED_DTYPE, POINT_DTYPE, NodeStack, ResponseStack, RunResult
 from echofuse.site import Site
 
@@ -44,7 +44,7 @@ class FrameOutput:
     """What the hub said about one frame."""
 
     time_us: int
-    points: NDArray[np.float32]  # (n, 4) x [m], y [m], members, weight
+    points: NDArray[np.float32]  # (n, 4) x, y [m], members, weight; (n, 5) with z of a hub in space
     tracks: NDArray[np.void]
     taps: Taps = field(default_factory=dict)  # of the hub
 
@@ -91,15 +91,18 @@ class RunTables:
         self._detections += self._waiting
         self._waiting = []
         self._points.append(_point_rows(number, frame.time_us, frame.points))
-        self._tracks.append(_track_rows(number, frame.time_us, frame.tracks))
+        self._tracks.append(self._track_rows(number, frame.time_us, frame.tracks))
         if "associated" in frame.taps:
             self._associated.append(_associated_rows(number, frame.taps))
         dt_s = self._frame_period_s if last_us is None else max((frame.time_us - last_us) * 1e-6, 1e-6)
         compared = self._compared.process(frame, dt_s)
-        self._baseline.append(_track_rows(number, frame.time_us, compared.tracks))
+        self._baseline.append(self._track_rows(number, frame.time_us, compared.tracks))
         for way, located in compared.points.items():
             table = self._compared_points.setdefault(way, [])
             table.append(_point_rows(number, frame.time_us, located))
+
+    def _track_rows(self, frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
+        return frame_rows(tracks, TRACK_DTYPE, frame, time_us, pipeline=self._recording.pipeline)
 
     def result(self, site: Site, counters: dict[str, dict[str, int]], shown: int) -> RunResult:
         """Return everything that was collected; its metrics are still to be measured."""
@@ -160,7 +163,9 @@ class RunTables:
 def _point_rows(frame: int, time_us: int, points: NDArray[np.float32]) -> NDArray[np.void]:
     rows = np.zeros(len(points), POINT_DTYPE)
     rows["frame"], rows["time_us"] = frame, time_us
-    for column, name in enumerate(("x_m", "y_m", "members", "weight")):
+    in_space = points.shape[1] == 5
+    rows["z_m"] = np.nan
+    for column, name in enumerate(("x_m", "y_m", *(("z_m",) if in_space else ()), "members", "weight")):
         rows[name] = points[:, column]
     return rows
 
@@ -169,15 +174,6 @@ def _associated_rows(frame: int, taps: Taps) -> NDArray[np.void]:
     rows = np.zeros(len(taps["frame"]), ASSOCIATED_DTYPE)
     rows["frame"], rows["owner"] = frame, taps["associated"]
     rows["node"], rows["path_m"] = taps["frame"][:, 0], taps["frame"][:, 1]
-    return rows
-
-
-def _track_rows(frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
-    rows = np.zeros(len(tracks), TRACK_DTYPE)
-    rows["frame"], rows["time_us"] = frame, time_us
-    for name in TRACK_DTYPE.names or ():
-        if name not in ("frame", "time_us"):
-            rows[name] = tracks[name]
     return rows
 
 

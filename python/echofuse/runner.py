@@ -318,7 +318,8 @@ def _write_tracks(path: Path, result: RunResult) -> None:
         for row in result.tracks:
             file.write(
                 f"{row['time_us'] * 1e-6:.6f},{row['id']},{TRACK_STATES[row['state']]},{row['x_m']:.4f},"
-                f"{row['y_m']:.4f},nan,{row['vx_mps']:.4f},{row['vy_mps']:.4f},nan\n"
+                f"{row['y_m']:.4f},{row['z_m']:.4f},"
+                f"{row['vx_mps']:.4f},{row['vy_mps']:.4f},{row['vz_mps']:.4f}\n"
             )
 
 

@@ -136,7 +136,9 @@ def _tracks(
             share = frame / len(time_us)
             state = 0 if frame < 4 + 3 * index else (2 if 0.45 < share < 0.55 and index == 0 else 1)
             x, y = walker.position_m[frame, :2] + rng.normal(0.0, noise_m, 2)
-            rows.append((frame, now_us, index + 1, state, 0, x, y, -1.5, 0.0, 0.01, 0.0, 0.01))
+            moving = (x, y, np.nan, -1.5, 0.0, np.nan)
+            covariance = (0.01, 0.0, 0.01, np.nan, np.nan, np.nan)
+            rows.append((frame, now_us, index + 1, state, 0, *moving, *covariance))
     return np.array(rows, dtype=TRACK_DTYPE)
 
 
@@ -156,7 +158,11 @@ def make_result(
     shown = n_frames // 2
     points = np.array(
         [
-            (frame, time_us[frame], *(walker.position_m[frame, :2] + rng.normal(0.0, 0.12, 2)), 4.0, 80.0)
+            (
+                *(frame, time_us[frame]),
+                *(walker.position_m[frame, :2] + rng.normal(0.0, 0.12, 2)),
+                *(np.nan, 4.0, 80.0),
+            )
             for frame in range(n_frames)
             for walker in walkers
             if rng.random() < 0.9

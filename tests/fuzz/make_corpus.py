@@ -12,8 +12,13 @@ from echofuse.emulation import codec
 
 HERE = Path(__file__).parent
 #: In the order of kDecoders of messages.cpp.
-DECODERS = ("detections", "tracks", "node_health", "heartbeat", "synchronization", "raw_scan")
-SUBJECTS = dict(zip((6200, 6201, 6205, codec.HEARTBEAT, codec.TIME, codec.RAW_SCAN), DECODERS, strict=True))
+DECODERS = (
+    *("detections", "tracks", "node_health", "heartbeat", "synchronization", "raw_scan"),
+    "spatial_tracks",
+)
+SUBJECTS = dict(
+    zip((6200, 6201, 6205, codec.HEARTBEAT, codec.TIME, codec.RAW_SCAN, 6208), DECODERS, strict=True)
+)
 ACCESS, LIST, GET_INFO, OTHER = (bytes([n]) for n in range(4))  # kServices of requests.cpp
 
 

@@ -17,8 +17,8 @@ using Bytes = Span<const std::uint8_t>;
 using Room = std::array<std::uint8_t, kMaxPayloadBytes>;
 
 /// decode(payload), encode, decode, encode: both encoded payloads are the same bytes.
-template <class Message, class Decode>
-void round_trip(Bytes payload, Decode&& decoded) {
+template <class Message, class Decode, class Encode>
+void round_trip(Bytes payload, Decode&& decoded, Encode&& encode) {
   Message first;
   if (decoded(payload, first) != Status::kOk) return;
   Room once;
@@ -29,6 +29,12 @@ void round_trip(Bytes payload, Decode&& decoded) {
   Room twice;
   EXPECT(encode(second, twice) == size);
   for (std::size_t i = 0; i < size; ++i) EXPECT(once[i] == twice[i]);
+}
+
+template <class Message, class Decode>
+void round_trip(Bytes payload, Decode&& decoded) {
+  round_trip<Message>(payload, decoded,
+                      [](const Message& message, Span<std::uint8_t> out) { return encode(message, out); });
 }
 
 void detections(Bytes payload) {
@@ -42,13 +48,21 @@ void detections(Bytes payload) {
   });
 }
 
+Status checked(Status status, const Tracks& message) {
+  EXPECT(status == Status::kOk || message.tracks.empty());
+  for (const Track& track : message.tracks) EXPECT(track.state <= TrackState::kDead);
+  return status;
+}
+
 void tracks(Bytes payload) {
-  round_trip<Tracks>(payload, [](Bytes bytes, Tracks& message) {
-    const Status status = decode(bytes, message);
-    EXPECT(status == Status::kOk || message.tracks.empty());
-    for (const Track& track : message.tracks) EXPECT(track.state <= TrackState::kDead);
-    return status;
-  });
+  round_trip<Tracks>(payload,
+                     [](Bytes bytes, Tracks& message) { return checked(decode(bytes, message), message); });
+}
+
+void spatial_tracks(Bytes payload) {
+  round_trip<Tracks>(
+      payload, [](Bytes bytes, Tracks& message) { return checked(decode_spatial(bytes, message), message); },
+      encode_spatial);
 }
 
 void node_health(Bytes payload) {
@@ -84,8 +98,8 @@ void raw_scan(Bytes payload) {
   EXPECT(9 + 4 * n_samples <= payload.size() || n_samples == 0);
 }
 
-[[maybe_unused]] constexpr std::array kDecoders{detections, tracks,          node_health,
-                                                heartbeat,  synchronization, raw_scan};
+[[maybe_unused]] constexpr std::array kDecoders{detections,      tracks,   node_health,   heartbeat,
+                                                synchronization, raw_scan, spatial_tracks};
 
 }  // namespace
 

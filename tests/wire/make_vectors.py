@@ -56,6 +56,14 @@ def vectors() -> list[str]:
         velocity=np.array([0.0, 1e-3], np.float32),
         covariance=np.array([0.04, -0.01, 0.09], np.float32),
     )
+    in_space = echofuse.SpatialTrack_1_0(
+        id_=9,
+        state=2,
+        frames_since_update=3,
+        position=np.array([1.5, -2.25, 1.125], np.float32),
+        velocity=np.array([0.0, 1e-3, -0.5], np.float32),
+        covariance=np.array([0.04, -0.01, 0.09, 0.02, -0.03, 0.16], np.float32),
+    )
     heartbeat = uavcan.node.Heartbeat_1_0(
         uptime=86_400,
         health=uavcan.node.Health_1_0(2),
@@ -82,6 +90,13 @@ def vectors() -> list[str]:
             7168,
             61440,
             6,
+        ),
+        vector(
+            "spatial_track",
+            echofuse.SpatialTracks_1_0(time_us=1_234_567, frame=12, tracks=[in_space]),
+            6208,
+            61440,
+            12,
         ),
     ]
 

@@ -33,6 +33,7 @@ def test_the_default_subjects() -> None:
         "Persons": 6204,
         "Detections": codec.DETECTIONS,
         "Tracks": codec.TRACKS,
+        "SpatialTracks": codec.SPATIAL_TRACKS,
         "NodeHealth": codec.NODE_HEALTH,
         "Tap": codec.TAP,
         "RawScan": codec.RAW_SCAN,

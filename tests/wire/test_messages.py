@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from echofuse import _core
 from echofuse.emulation import codec
+from echofuse.recording.model import SPATIAL_COLUMNS
 
 
 def float32(*values: float) -> np.ndarray:
@@ -48,6 +49,47 @@ def test_tracks(vectors) -> None:
     assert same["vy_mps"] == row["vy_mps"]
 
 
+def test_tracks_in_space(vectors) -> None:
+    vector = vectors["spatial_track"]
+    status, time_us, frame, rows = _core.decode_spatial_tracks(vector.payload)
+    assert (status, time_us, frame, len(rows)) == (_core.Status.ok, 1_234_567, 12, 1)
+    expected = {
+        **{"id": 9, "state": 2, "frames_since_update": 3},
+        **{"x_m": 1.5, "y_m": -2.25, "z_m": 1.125, "vx_mps": 0.0, "vy_mps": 1e-3, "vz_mps": -0.5},
+        **{"covariance_xx_m2": 0.04, "covariance_xy_m2": -0.01, "covariance_yy_m2": 0.09},
+        **{"covariance_xz_m2": 0.02, "covariance_yz_m2": -0.03, "covariance_zz_m2": 0.16},
+    }
+    assert rows.dtype.names == tuple(expected)
+    for name, value in expected.items():
+        assert rows[name][0] == np.float32(value), name
+    assert _core.encode_spatial_tracks(time_us, frame, rows) == vector.payload
+    transfer = codec.Transfer(vector.source, vector.subject, vector.transfer_id, vector.payload)
+    report = codec.reported_tracks(transfer)
+    assert report is not None
+    assert report[:2] == (time_us, frame)
+    assert all(np.array_equal(report[2][name], rows[name]) for name in expected)
+    assert codec.tracks_payload(time_us, frame, rows, codec.SPATIAL_TRACK) == vector.payload
+
+
+def test_a_hubs_report_is_told_by_its_subject(vectors) -> None:
+    def report(name: str, **other: int) -> object:
+        vector = vectors[name]
+        transfer = codec.Transfer(vector.source, vector.subject, vector.transfer_id, vector.payload)
+        return codec.reported_tracks(transfer._replace(**other))
+
+    assert report("track") is not None
+    assert report("health") is None
+    assert report("track", kind=codec.REQUEST) is None
+
+
+def test_planar_tracks_have_no_height_on_the_wire(vectors) -> None:
+    _, time_us, frame, rows = _core.decode_spatial_tracks(vectors["spatial_track"].payload)
+    assert _core.encode_tracks(time_us, frame, rows) == vectors["track"].payload
+    _, _, _, planar = _core.decode_tracks(vectors["track"].payload)
+    for name in SPATIAL_COLUMNS:
+        assert planar[name] == 0.0
+
+
 def test_health(vectors) -> None:
     counters = codec.parse_health(vectors["health"].payload)
     assert list(counters.values()) == list(range(0, 31 * 255, 255))
@@ -70,9 +112,10 @@ def test_any_payload_is_decoded_or_refused(payload: bytes, source: int, transfer
     status, *_, rows = _core.decode_detections(source, transfer_id, payload)
     assert status in (_core.Status.ok, _core.Status.invalid_input)
     assert len(rows) <= 16
-    status, *_, rows = _core.decode_tracks(payload)
-    assert status in (_core.Status.ok, _core.Status.invalid_input)
-    assert all(row["state"] <= 3 for row in rows)
+    for decode in (_core.decode_tracks, _core.decode_spatial_tracks):
+        status, *_, rows = decode(payload)
+        assert status in (_core.Status.ok, _core.Status.invalid_input)
+        assert all(row["state"] <= 3 for row in rows)
 
 
 @pytest.mark.parametrize("count", [17, 255])

@@ -152,7 +152,8 @@ class FirmwareHub:
         shown, messages = self._board.step(now_us, link)
         frames = by_frame(shown)
         for transfer in messages:
-            if transfer.port == codec.TRACKS:
-                time_us, frame, tracks = codec.parse_tracks(transfer.payload)
+            report = codec.reported_tracks(transfer)
+            if report is not None:
+                time_us, frame, tracks = report
                 taps = next(frames, {})
                 self._answers.append(HubAnswer(self._board.input_us(time_us), frame, tracks, taps))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 BROADCAST = 0xFFFF
 HEARTBEAT, TIME = 7509, 7168
 REGISTER_ACCESS, REGISTER_LIST, GET_INFO = 384, 385, 430
-DETECTIONS, TRACKS, NODE_HEALTH, TAP, RAW_SCAN = 6200, 6201, 6205, 6206, 6207
+DETECTIONS, TRACKS, NODE_HEALTH, TAP, RAW_SCAN, SPATIAL_TRACKS = 6200, 6201, 6205, 6206, 6207, 6208
 
 MESSAGE, REQUEST, RESPONSE = 0x0000, 0xC000, 0x8000  # bits of the data specifier
 _HEADER = struct.Struct("<BBHHHQIH")  # all but the CRC
@@ -31,6 +31,17 @@ TRACK = np.dtype(
         *((f"covariance_{name}_m2", "<f4") for name in ("xx", "xy", "yy")),
     ]
 )
+SPATIAL_TRACK = np.dtype(
+    [
+        ("id", "<u4"),
+        ("state", "u1"),
+        ("frames_since_update", "<u2"),
+        *((name, "<f4") for name in ("x_m", "y_m", "z_m", "vx_mps", "vy_mps", "vz_mps")),
+        *((f"covariance_{name}_m2", "<f4") for name in ("xx", "xy", "yy", "xz", "yz", "zz")),
+    ]
+)
+#: The rows of the messages in which hubs report, by subject.
+TRACK_ROWS = {TRACKS: TRACK, SPATIAL_TRACKS: SPATIAL_TRACK}
 
 #: What a NodeHealth's values are, by kind (docs/link_protocol.md).
 _LINK_COUNTERS = (
@@ -245,22 +256,34 @@ def parse_detections(payload: bytes) -> tuple[int, NDArray[np.void]]:
     return int.from_bytes(payload[:7], "little"), np.frombuffer(payload[8:], DETECTION, payload[7])
 
 
-def parse_tracks(payload: bytes) -> tuple[int, int, NDArray[np.void]]:
-    """Return time [us], frame number and the rows (n,) of echofuse.Tracks."""
+def parse_tracks(payload: bytes, rows: np.dtype[np.void] = TRACK) -> tuple[int, int, NDArray[np.void]]:
+    """Return time [us], frame number and the rows (n,) of Tracks, or with SPATIAL_TRACK of SpatialTracks."""
     return (
         int.from_bytes(payload[:7], "little"),
         int.from_bytes(payload[7:11], "little"),
-        np.frombuffer(payload[12:], TRACK, payload[11]),
+        np.frombuffer(payload[12:], rows, payload[11]),
     )
 
 
-def tracks_payload(time_us: int, frame: int, tracks: NDArray[np.void]) -> bytes:
-    """Return the payload of echofuse.Tracks; tracks (n,) with the fields of TRACK, n at most 24."""
-    rows = np.zeros(len(tracks), TRACK)
-    for name in TRACK.names or ():
-        rows[name] = tracks[name]
+def reported_tracks(transfer: Transfer) -> tuple[int, int, NDArray[np.void]] | None:
+    """Return what `parse_tracks` does of a hub's report, planar or in space; None when it is none."""
+    if transfer.kind != MESSAGE or transfer.port not in TRACK_ROWS:
+        return None
+    return parse_tracks(transfer.payload, TRACK_ROWS[transfer.port])
+
+
+def tracks_payload(
+    time_us: int, frame: int, tracks: NDArray[np.void], rows: np.dtype[np.void] = TRACK
+) -> bytes:
+    """Return the payload of Tracks, or with SPATIAL_TRACK of SpatialTracks.
+
+    tracks: (n,) with the fields of `rows`, n at most 24.
+    """
+    sent = np.zeros(len(tracks), rows)
+    for name in rows.names or ():
+        sent[name] = tracks[name]
     head = (time_us & (1 << 56) - 1).to_bytes(7, "little") + (frame & 0xFFFFFFFF).to_bytes(4, "little")
-    return head + bytes([len(rows)]) + rows.tobytes()
+    return head + bytes([len(sent)]) + sent.tobytes()
 
 
 def parse_health(payload: bytes) -> dict[str, int]:

@@ -51,7 +51,9 @@ class Agreement:
         ):
             self.frames_differ += 1
             return
-        apart = np.hypot(here["x_m"] - there["x_m"], here["y_m"] - there["y_m"])
+        apart = np.zeros(len(here), np.float32)
+        for name in ("x_m", "y_m", "z_m"):  # z: 0 of both where the hub is planar
+            apart = np.hypot(apart, here[name] - there[name])
         largest = float(apart.max(initial=0.0))
         self.frames_differ += largest > SAME_POSITION_M
         self.position_difference_m = max(self.position_difference_m, largest)

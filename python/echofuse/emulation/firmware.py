@@ -166,8 +166,9 @@ class FirmwareRadar:
         self._now_us = now_us
         _, transfers = self.hub.step(now_us, link)
         for transfer in transfers:
-            if transfer.port == codec.TRACKS and transfer.kind == codec.MESSAGE:
-                self._tracks.append(codec.parse_tracks(transfer.payload))
+            report = codec.reported_tracks(transfer)
+            if report is not None:
+                self._tracks.append(report)
             elif transfer.port == codec.TIME:
                 for node_id in self._to_nodes:
                     self._to_nodes[node_id] += codec.frame(transfer)

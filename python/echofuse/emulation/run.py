@@ -260,8 +260,9 @@ class _Run:
         self._hub.keep_profile(output)
         taps = by_frame(output.taps)
         for transfer in self._from_hub.feed(output.link_out, now_us):
-            if transfer.kind == codec.MESSAGE and transfer.port == codec.TRACKS:
-                time_us, _, tracks = codec.parse_tracks(transfer.payload)
+            report = codec.reported_tracks(transfer)
+            if report is not None:
+                time_us, _, tracks = report
                 shown = next(taps, {})
                 points = shown.get("points", np.zeros((0, 4), np.float32))
                 frame = FrameOutput(time_us=time_us, points=points, tracks=tracks, taps=shown)

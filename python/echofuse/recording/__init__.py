@@ -2,6 +2,7 @@
 
 from echofuse.recording.model import (
     DETECTION_DTYPE,
+    PLANAR_TRACK_DTYPE,
     TRACK_DTYPE,
     Emulated,
     NodeRecording,
@@ -11,10 +12,11 @@ from echofuse.recording.model import (
     Recording,
 )
 from echofuse.recording.reader import read
-from echofuse.recording.writer import RecordingWriter, frame_digest, write
+from echofuse.recording.writer import RecordingWriter, frame_digest, frame_rows, write
 
 __all__ = [
     "DETECTION_DTYPE",
+    "PLANAR_TRACK_DTYPE",
     "TRACK_DTYPE",
     "Emulated",
     "NodeRecording",
@@ -24,6 +26,7 @@ __all__ = [
     "Recording",
     "RecordingWriter",
     "frame_digest",
+    "frame_rows",
     "read",
     "write",
 ]

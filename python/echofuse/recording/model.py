@@ -13,7 +13,8 @@ VERSION: Final = 1
 DETECTION_DTYPE = np.dtype(
     [("frame", "i4"), ("node", "i4"), ("time_us", "i8"), ("delay_s", "f4"), ("weight", "f4")]
 )
-#: One row a living track and frame. `state`: 0 unconfirmed, 1 confirmed, 2 silent.
+#: One row a living track and frame. `state`: 0 unconfirmed, 1 confirmed, 2 silent. SPATIAL_COLUMNS are NaN
+#: where the pipeline is planar, as all were when recordings did not have them yet.
 TRACK_DTYPE = np.dtype(
     [
         ("frame", "i4"),
@@ -23,12 +24,21 @@ TRACK_DTYPE = np.dtype(
         ("frames_since_update", "i4"),
         ("x_m", "f4"),
         ("y_m", "f4"),
+        ("z_m", "f4"),
         ("vx_mps", "f4"),
         ("vy_mps", "f4"),
+        ("vz_mps", "f4"),
         ("covariance_xx_m2", "f4"),
         ("covariance_xy_m2", "f4"),
         ("covariance_yy_m2", "f4"),
+        ("covariance_xz_m2", "f4"),
+        ("covariance_yz_m2", "f4"),
+        ("covariance_zz_m2", "f4"),
     ]
+)
+SPATIAL_COLUMNS = ("z_m", "vz_mps", "covariance_xz_m2", "covariance_yz_m2", "covariance_zz_m2")
+PLANAR_TRACK_DTYPE = np.dtype(
+    [(name, TRACK_DTYPE[name]) for name in TRACK_DTYPE.names or () if name not in SPATIAL_COLUMNS]
 )
 
 #: Scans are kept in the type in which the radar delivers them. [count]

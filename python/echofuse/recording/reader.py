@@ -13,6 +13,7 @@ from echofuse.errors import InputError, problem
 from echofuse.recording.model import (
     DETECTION_DTYPE,
     FORMAT,
+    SPATIAL_COLUMNS,
     TRACK_DTYPE,
     VERSION,
     Emulated,
@@ -187,10 +188,16 @@ class _Reader:
         )
 
     def table(self, key: str, dtype: np.dtype[np.void], n_frames: int) -> NDArray[np.void]:
+        """Return the rows of whole frames; SPATIAL_COLUMNS, which older recordings lack, are NaN there."""
         dataset = self.dataset(key)
-        if dataset.dtype.names != dtype.names or len(dataset.shape) != 1:
-            raise self.error(key, f"a table with the columns {', '.join(dtype.names or ())}")
-        rows = np.asarray(dataset[()]).astype(dtype)
+        names = dtype.names or ()
+        known = (names, tuple(name for name in names if name not in SPATIAL_COLUMNS))
+        if dataset.dtype.names not in known or len(dataset.shape) != 1:
+            raise self.error(key, f"a table with the columns {', '.join(names)}")
+        stored = np.asarray(dataset[()])
+        rows = np.zeros(len(stored), dtype)
+        for name in names:
+            rows[name] = stored[name] if name in dataset.dtype.names else np.nan
         return rows[rows["frame"] < n_frames]
 
     def group(self, key: str) -> h5py.Group:

@@ -16,6 +16,8 @@ from echofuse.recording.growing_table import GrowingTable
 from echofuse.recording.model import (
     DETECTION_DTYPE,
     FORMAT,
+    PLANAR_TRACK_DTYPE,
+    SPATIAL_COLUMNS,
     TRACK_DTYPE,
     VERSION,
     Emulated,
@@ -24,8 +26,9 @@ from echofuse.recording.model import (
     Pulse,
     Recording,
 )
+from echofuse.site import PIPELINES
 
-__all__ = ["PULSE_DTYPE", "RecordingWriter", "frame_digest", "write"]
+__all__ = ["PULSE_DTYPE", "RecordingWriter", "frame_digest", "frame_rows", "write"]
 
 PULSE_DTYPE = np.dtype([("kind", "S32"), ("centre_hz", "f8"), ("bandwidth_hz", "f8")])
 _BLOCK_BYTES = 1 << 18  # of one node's scans; large enough that HDF5's cost a call vanishes
@@ -37,13 +40,40 @@ def frame_digest(time_us: int, detections: NDArray[np.void], tracks: NDArray[np.
     """Return SHA-256 over the bytes of one frame's outputs (32 bytes).
 
     Little-endian: int64 time, uint32 number of detections, their DETECTION_DTYPE rows, uint32 number of
-    tracks, their TRACK_DTYPE rows.
+    tracks, their TRACK_DTYPE rows; of a planar pipeline, whose z is NaN, PLANAR_TRACK_DTYPE.
     """
     digest = hashlib.sha256(np.array(time_us, "<i8").tobytes())
+    if np.all(np.isnan(tracks["z_m"])):
+        tracks = tracks[list(PLANAR_TRACK_DTYPE.names or ())].astype(PLANAR_TRACK_DTYPE)
     for rows in (detections, tracks):
         digest.update(np.array(rows.size, "<u4").tobytes())
         digest.update(rows.astype(rows.dtype.newbyteorder("<")).tobytes())
     return digest.digest()
+
+
+def frame_rows(
+    values: NDArray[np.void], dtype: np.dtype[np.void], frame: int, time_us: int, *, pipeline: str
+) -> NDArray[np.void]:
+    """Return a frame's rows (n,) as a recording has them.
+
+    values: (n,) with the fields of `dtype`. They may lack `frame`, `time_us`, which is the frame's then, and
+    what is of z, which is NaN then, as it always is where the pipeline is planar.
+    """
+    kind = PIPELINES.get(pipeline)
+    given = set(values.dtype.names or ())
+    if kind is not None and kind.dimension == 2:
+        given -= set(SPATIAL_COLUMNS)
+    rows = np.zeros(len(values), dtype)
+    for name in dtype.names or ():
+        if name == "frame":
+            rows[name] = frame
+        elif name == "time_us" and name not in given:
+            rows[name] = time_us
+        elif name in SPATIAL_COLUMNS and name not in given:
+            rows[name] = np.nan
+        else:
+            rows[name] = values[name]
+    return rows
 
 
 class RecordingWriter:
@@ -73,7 +103,7 @@ class RecordingWriter:
         self._file.attrs["created"] = created or datetime.now(UTC).isoformat(timespec="seconds")
         self._file["site"] = site_toml
         self._file.create_group("nodes", track_order=True)
-        self._target = target
+        self._pipeline, self._target = pipeline, target
         self._nodes: dict[str, _NodeTables] = {}
         self._outputs: _OutputTables | None = None
 
@@ -157,13 +187,15 @@ class RecordingWriter:
         """Append one frame's outputs and return its hash.
 
         Rows are structured arrays with at least the fields of DETECTION_DTYPE and TRACK_DTYPE; `frame` is
-        counted here, and `time_us` filled in where a row has none.
+        counted here, and what else they may lack says `frame_rows`.
         """
         if self._outputs is None:
             self._outputs = _create_outputs(self._file, self._target)
         tables = self._outputs
-        detection_rows = _rows(detections, DETECTION_DTYPE, tables.n_frames, time_us)
-        track_rows = _rows(tracks, TRACK_DTYPE, tables.n_frames, time_us)
+        detection_rows, track_rows = (
+            frame_rows(values, dtype, tables.n_frames, time_us, pipeline=self._pipeline)
+            for values, dtype in ((detections, DETECTION_DTYPE), (tracks, TRACK_DTYPE))
+        )
         digest = frame_digest(time_us, detection_rows, track_rows)
         tables.detections.append(detection_rows)
         tables.tracks.append(track_rows)
@@ -243,20 +275,6 @@ def _create_outputs(file: h5py.File, target: str) -> _OutputTables:
         frame_hash=GrowingTable(group, "frame_hash", (32,), np.uint8, block_rows=_BLOCK_FRAMES),
         frame_time_us=GrowingTable(group, "frame_time_us", (), np.int64, block_rows=_BLOCK_FRAMES),
     )
-
-
-def _rows(values: NDArray[np.void], dtype: np.dtype[np.void], frame: int, time_us: int) -> NDArray[np.void]:
-    """Copy the fields of `dtype`, with the frame's number, and its time where rows have none."""
-    rows = np.zeros(len(values), dtype)
-    given = values.dtype.names or ()
-    for name in dtype.names or ():
-        if name == "frame":
-            rows[name] = frame
-        elif name == "time_us" and name not in given:
-            rows[name] = time_us
-        else:
-            rows[name] = values[name]
-    return rows
 
 
 def _write_node(writer: RecordingWriter, node: NodeRecording) -> None:

@@ -60,6 +60,7 @@ class PipelineKind:
     least_nodes: int  # fewer see people, and cannot tell where they are
     most_nodes: int
     behind_wall: bool = False  # receivers on a line before a wall, else around the area
+    dimension: int = 2  # of the positions that the hub tells
 
     def new_node(self) -> Any:
         """Return a node that is not configured."""

@@ -93,7 +93,7 @@ TEST_CASE("a report of more detections than there can be is refused, and leaves 
 }
 
 TEST_CASE("our messages are refused when they are cut short") {
-  for (const char* name : {"four_detections", "no_detections", "track", "health"}) {
+  for (const char* name : {"four_detections", "no_detections", "track", "spatial_track", "health"}) {
     const Vector vector = vector_of(name);
     Detections report;
     Tracks tracks;
@@ -102,6 +102,7 @@ TEST_CASE("our messages are refused when they are cut short") {
       const Span<const std::uint8_t> cut{vector.payload.data(), size};
       const Status status = vector.subject == 6200   ? decode({}, cut, report)
                             : vector.subject == 6201 ? decode(cut, tracks)
+                            : vector.subject == 6208 ? decode_spatial(cut, tracks)
                                                      : decode(cut, health);
       REQUIRE(status == Status::kInvalidInput);
     }
@@ -122,6 +123,8 @@ TEST_CASE("Tracks are PyCyphal's bytes; a state that does not exist is refused")
   CHECK(track.y_m == -2.25f);
   CHECK(track.vy_mps == 1e-3f);
   CHECK(track.covariance_yy_m2 == 0.09f);
+  CHECK(track.z_m == 0.0f);
+  CHECK(track.covariance_zz_m2 == 0.0f);
   CHECK(payload_of(tracks) == vector.payload);
   Bytes wrong = vector.payload;
   wrong[12 + 4] = 4;
@@ -129,15 +132,46 @@ TEST_CASE("Tracks are PyCyphal's bytes; a state that does not exist is refused")
   CHECK(tracks.tracks.empty());
 }
 
-TEST_CASE("the most tracks that there can be fit into a payload") {
+TEST_CASE("SpatialTracks are PyCyphal's bytes; a state that does not exist is refused") {
+  const Vector vector = vector_of("spatial_track");
+  Tracks tracks;
+  REQUIRE(decode_spatial(span_of(vector.payload), tracks) == Status::kOk);
+  CHECK(tracks.time_us == 1234567);
+  CHECK(tracks.frame == 12);
+  REQUIRE(tracks.tracks.size() == 1);
+  const Track& track = tracks.tracks[0];
+  CHECK(track.id == 9);
+  CHECK(track.y_m == -2.25f);
+  CHECK(track.z_m == 1.125f);
+  CHECK(track.vy_mps == 1e-3f);
+  CHECK(track.vz_mps == -0.5f);
+  CHECK(track.covariance_yy_m2 == 0.09f);
+  CHECK(track.covariance_xz_m2 == 0.02f);
+  CHECK(track.covariance_yz_m2 == -0.03f);
+  CHECK(track.covariance_zz_m2 == 0.16f);
+  CHECK(encoded([&](Span<std::uint8_t> out) { return encode_spatial(tracks, out); }) == vector.payload);
+  Bytes wrong = vector.payload;
+  wrong[12 + 4] = 4;
+  CHECK(decode_spatial(span_of(wrong), tracks) == Status::kInvalidInput);
+  CHECK(tracks.tracks.empty());
+}
+
+TEST_CASE("the most tracks that there can be fit into a payload, in the plane and in space") {
   Tracks tracks;
   while (tracks.tracks.size() < kMaxTracks)
-    REQUIRE(tracks.tracks.try_push_back({1, TrackState::kConfirmed, 100000, 1, 2, 3, 4, 5, 6, 7}));
+    REQUIRE(tracks.tracks.try_push_back(
+        {1, TrackState::kConfirmed, 100000, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}));
   const Bytes payload = payload_of(tracks);
   CHECK(payload.size() == 12 + 35 * kMaxTracks);
+  const Bytes in_space = encoded([&](Span<std::uint8_t> out) { return encode_spatial(tracks, out); });
+  CHECK(in_space.size() == 12 + 55 * kMaxTracks);
   REQUIRE(decode(span_of(payload), tracks) == Status::kOk);
   CHECK(tracks.tracks.size() == kMaxTracks);
   CHECK(tracks.tracks[0].frames_since_update == 65535);
+  CHECK(tracks.tracks[0].covariance_zz_m2 == 0.0f);
+  REQUIRE(decode_spatial(span_of(in_space), tracks) == Status::kOk);
+  CHECK(tracks.tracks.size() == kMaxTracks);
+  CHECK(tracks.tracks[0].covariance_zz_m2 == 12.0f);
 }
 
 TEST_CASE("NodeHealth is PyCyphal's bytes; a kind that does not exist is refused") {

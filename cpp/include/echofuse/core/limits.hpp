@@ -53,7 +53,7 @@ inline constexpr std::size_t kMaxLinkSessions =
 inline constexpr std::size_t kMaxHealthValues =
     48;  ///< counters in one NodeHealth: a hub has 28, and its link 8
 inline constexpr std::size_t kMaxPayloadBytes =
-    1024;  ///< [byte] of any message but RawScan: Tracks takes 24 times 35 and 12
+    1332;  ///< [byte] of any message but RawScan: SpatialTracks takes 24 times 55 and 12
 
 }  // namespace echofuse
 

@@ -38,6 +38,10 @@ enum class TapId : std::uint8_t {
   kTracks = 39,     ///< (n_tracks, 7) id, state, x, y [m], vx, vy [m/s], scans since the last update
   kAssociated =
       40,  ///< (n_detections,) of the frame: id of the track that took it, -k of the k-th couple, 0 of neither
+  // hub that locates in three dimensions, in place of kPoints and kTracks
+  kSpatialPoints = 41,  ///< (n_points, 5) x, y, z [m], members, weight
+  kSpatialTracks =
+      42,  ///< (n_tracks, 9) id, state, x, y, z [m], vx, vy, vz [m/s], scans since the last update
 };
 
 /// Receives one tap: `values` is only valid during the call, and empty for a mark.

@@ -20,8 +20,13 @@ TransferHeader header_of(const Detections& report, std::uint16_t subject);
 std::size_t encode(const Detections& report, Span<std::uint8_t> out);
 Status decode(const TransferHeader& header, Span<const std::uint8_t> payload, Detections& report);
 
+/// Tracks of a planar hub: what is of z is not sent, and 0 when it is read.
 std::size_t encode(const Tracks& tracks, Span<std::uint8_t> out);
 Status decode(Span<const std::uint8_t> payload, Tracks& tracks);
+
+/// SpatialTracks, of a hub that locates in three dimensions.
+std::size_t encode_spatial(const Tracks& tracks, Span<std::uint8_t> out);
+Status decode_spatial(Span<const std::uint8_t> payload, Tracks& tracks);
 
 std::size_t encode(const NodeHealth& health, Span<std::uint8_t> out);
 Status decode(Span<const std::uint8_t> payload, NodeHealth& health);

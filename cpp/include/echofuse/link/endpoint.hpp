@@ -56,7 +56,7 @@ class Endpoint {
   std::size_t get_info();
   void send(const TransferHeader& header, std::size_t size);
 
-  static const std::array<RegisterField, 10> kRegisters;
+  static const std::array<RegisterField, 11> kRegisters;
 
   FrameReader reader_;
   SendFunction send_;

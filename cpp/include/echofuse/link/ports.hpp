@@ -21,6 +21,7 @@ struct Ports {
   std::uint16_t node_health = 6205;
   std::uint16_t tap = 6206;
   std::uint16_t raw_scan = 6207;
+  std::uint16_t spatial_tracks = 6208;
 };
 
 }  // namespace echofuse::link

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "echofuse/Detections_1_0.h"
 #include "echofuse/NodeHealth_1_0.h"
+#include "echofuse/SpatialTracks_1_0.h"
 #include "echofuse/Tap_1_0.h"
 #include "echofuse/Tracks_1_0.h"
 #include "uavcan/node/Heartbeat_1_0.h"
@@ -43,38 +45,75 @@ std::int64_t from_time(std::uint64_t time_us) {
 
 static_assert(echofuse_Detections_1_0_detections_ARRAY_CAPACITY_ == kMaxDetectionsPerNode);
 static_assert(echofuse_Tracks_1_0_tracks_ARRAY_CAPACITY_ == kMaxTracks);
+static_assert(echofuse_SpatialTracks_1_0_tracks_ARRAY_CAPACITY_ == kMaxTracks);
 static_assert(echofuse_NodeHealth_1_0_values_ARRAY_CAPACITY_ == kMaxHealthValues);
 static_assert(echofuse_Tap_1_0_values_ARRAY_CAPACITY_ == kTapValues);
+static_assert(kMaxPayloadBytes >= echofuse_SpatialTracks_1_0_SERIALIZATION_BUFFER_SIZE_BYTES_);
 
-echofuse_Track_1_0 to_wire(const Track& track) {
-  echofuse_Track_1_0 wire{};
+constexpr std::size_t kTrackBytes = 35;
+constexpr std::size_t kSpatialTrackBytes = 55;
+
+/// Fills a Track or SpatialTrack: as many numbers as its arrays take. The plane's covariances come first.
+template <class WireTrack>
+void to_wire(const Track& track, WireTrack& wire) {
   wire.id = static_cast<std::uint32_t>(track.id);
   wire.state = static_cast<std::uint8_t>(track.state);
   wire.frames_since_update =
       static_cast<std::uint16_t>(std::clamp<std::int32_t>(track.frames_since_update, 0, 65535));
-  wire.position[0] = track.x_m;
-  wire.position[1] = track.y_m;
-  wire.velocity[0] = track.vx_mps;
-  wire.velocity[1] = track.vy_mps;
-  wire.covariance[0] = track.covariance_xx_m2;
-  wire.covariance[1] = track.covariance_xy_m2;
-  wire.covariance[2] = track.covariance_yy_m2;
-  return wire;
+  const float position[] = {track.x_m, track.y_m, track.z_m};
+  const float velocity[] = {track.vx_mps, track.vy_mps, track.vz_mps};
+  const float covariance[] = {track.covariance_xx_m2, track.covariance_xy_m2, track.covariance_yy_m2,
+                              track.covariance_xz_m2, track.covariance_yz_m2, track.covariance_zz_m2};
+  std::copy_n(position, std::size(wire.position), wire.position);
+  std::copy_n(velocity, std::size(wire.velocity), wire.velocity);
+  std::copy_n(covariance, std::size(wire.covariance), wire.covariance);
 }
 
-Track from_wire(const echofuse_Track_1_0& wire) {
+template <class WireTrack>
+Track from_wire(const WireTrack& wire) {
+  float position[3]{}, velocity[3]{}, covariance[6]{};
+  std::copy(std::begin(wire.position), std::end(wire.position), position);
+  std::copy(std::begin(wire.velocity), std::end(wire.velocity), velocity);
+  std::copy(std::begin(wire.covariance), std::end(wire.covariance), covariance);
   return {static_cast<std::int32_t>(wire.id),
           static_cast<TrackState>(wire.state),
           wire.frames_since_update,
-          wire.position[0],
-          wire.position[1],
-          0.0f,
-          wire.velocity[0],
-          wire.velocity[1],
-          0.0f,
-          wire.covariance[0],
-          wire.covariance[1],
-          wire.covariance[2]};
+          position[0],
+          position[1],
+          position[2],
+          velocity[0],
+          velocity[1],
+          velocity[2],
+          covariance[0],
+          covariance[1],
+          covariance[2],
+          covariance[3],
+          covariance[4],
+          covariance[5]};
+}
+
+/// Fills a Tracks or SpatialTracks.
+template <class WireTracks>
+void to_wire(const Tracks& tracks, WireTracks& wire) {
+  wire.time_us = to_time(tracks.time_us);
+  wire.frame = tracks.frame;
+  wire.tracks.count = tracks.tracks.size();
+  for (std::size_t i = 0; i < tracks.tracks.size(); ++i) to_wire(tracks.tracks[i], wire.tracks.elements[i]);
+}
+
+/// A state that does not exist: kInvalidInput, and `tracks` without any.
+template <class WireTracks>
+Status from_wire(const WireTracks& wire, Tracks& tracks) {
+  tracks.time_us = from_time(wire.time_us);
+  tracks.frame = wire.frame;
+  for (std::size_t i = 0; i < wire.tracks.count; ++i) {
+    if (wire.tracks.elements[i].state > static_cast<std::uint8_t>(TrackState::kDead)) {
+      tracks.tracks.clear();
+      return Status::kInvalidInput;
+    }
+    (void)tracks.tracks.try_push_back(from_wire(wire.tracks.elements[i]));
+  }
+  return Status::kOk;
 }
 
 }  // namespace
@@ -115,10 +154,7 @@ Status decode(const TransferHeader& header, Span<const std::uint8_t> payload, De
 
 std::size_t encode(const Tracks& tracks, Span<std::uint8_t> out) {
   echofuse_Tracks_1_0 wire{};
-  wire.time_us = to_time(tracks.time_us);
-  wire.frame = tracks.frame;
-  wire.tracks.count = tracks.tracks.size();
-  for (std::size_t i = 0; i < tracks.tracks.size(); ++i) wire.tracks.elements[i] = to_wire(tracks.tracks[i]);
+  to_wire(tracks, wire);
   std::size_t size = out.size();
   return length_or_nothing(echofuse_Tracks_1_0_serialize_(&wire, out.data(), &size), size);
 }
@@ -128,17 +164,24 @@ Status decode(Span<const std::uint8_t> payload, Tracks& tracks) {
   echofuse_Tracks_1_0 wire{};
   std::size_t size = payload.size();
   if (echofuse_Tracks_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
-  if (!holds(payload, kTimeBytes + 5, wire.tracks.count, 35)) return Status::kInvalidInput;
-  tracks.time_us = from_time(wire.time_us);
-  tracks.frame = wire.frame;
-  for (std::size_t i = 0; i < wire.tracks.count; ++i) {
-    if (wire.tracks.elements[i].state > static_cast<std::uint8_t>(TrackState::kDead)) {
-      tracks.tracks.clear();
-      return Status::kInvalidInput;
-    }
-    (void)tracks.tracks.try_push_back(from_wire(wire.tracks.elements[i]));
-  }
-  return Status::kOk;
+  if (!holds(payload, kTimeBytes + 5, wire.tracks.count, kTrackBytes)) return Status::kInvalidInput;
+  return from_wire(wire, tracks);
+}
+
+std::size_t encode_spatial(const Tracks& tracks, Span<std::uint8_t> out) {
+  echofuse_SpatialTracks_1_0 wire{};
+  to_wire(tracks, wire);
+  std::size_t size = out.size();
+  return length_or_nothing(echofuse_SpatialTracks_1_0_serialize_(&wire, out.data(), &size), size);
+}
+
+Status decode_spatial(Span<const std::uint8_t> payload, Tracks& tracks) {
+  tracks.tracks.clear();
+  echofuse_SpatialTracks_1_0 wire{};
+  std::size_t size = payload.size();
+  if (echofuse_SpatialTracks_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
+  if (!holds(payload, kTimeBytes + 5, wire.tracks.count, kSpatialTrackBytes)) return Status::kInvalidInput;
+  return from_wire(wire, tracks);
 }
 
 std::size_t encode(const NodeHealth& health, Span<std::uint8_t> out) {

@@ -17,8 +17,8 @@ constexpr std::uint64_t kMicrosecondsPerSecond = 1000000;
 
 }  // namespace
 
-const std::array<RegisterField, 10> Endpoint::kRegisters = [] {
-  std::array<RegisterField, 10> fields{{
+const std::array<RegisterField, 11> Endpoint::kRegisters = [] {
+  std::array<RegisterField, 11> fields{{
       ECHOFUSE_REGISTER_AS(Identity, node_id, "uavcan.node.id"),
       ECHOFUSE_REGISTER_AS(Identity, name, "uavcan.node.description"),
       ECHOFUSE_REGISTER_AS(Identity, ports.detections, "uavcan.pub.detections.id"),
@@ -29,6 +29,7 @@ const std::array<RegisterField, 10> Endpoint::kRegisters = [] {
       ECHOFUSE_REGISTER_AS(Identity, ports.node_health, "uavcan.pub.node_health.id"),
       ECHOFUSE_REGISTER_AS(Identity, ports.tap, "uavcan.pub.tap.id"),
       ECHOFUSE_REGISTER_AS(Identity, ports.raw_scan, "uavcan.sub.raw_scan.id"),
+      ECHOFUSE_REGISTER_AS(Identity, ports.spatial_tracks, "uavcan.pub.spatial_tracks.id"),
   }};
   fields[0].writable = false;  // the board knows it
   fields[1].writable = false;

@@ -11,7 +11,7 @@ from echofuse.emulation.machine import Machine, ScanInput, StepOutput
 from echofuse.emulation.reception import Receiver
 from echofuse.pipeline import configured_hub, configured_node, hub_config, node_config, places_of
 from echofuse.recording import NodeRecording
-from echofuse.site import Site
+from echofuse.site import PIPELINES, Site
 
 HUB_ID = 0xF000
 
@@ -36,7 +36,8 @@ class InProcessTarget:
 
     def open_hub(self) -> Machine:
         """Start the hub."""
-        return InProcessHub(configured_hub(self._site, hub_config(self._site)))
+        dimension = PIPELINES[self._site.pipeline].dimension
+        return InProcessHub(configured_hub(self._site, hub_config(self._site)), dimension)
 
     def close(self) -> None:
         """Nothing is held beside the machines."""
@@ -85,8 +86,10 @@ class InProcessNode:
 class InProcessHub:
     """The hub. It does what firmware_sim/hub_firmware.cpp does in a turn."""
 
-    def __init__(self, hub: "_core.SensorRadarHub") -> None:
+    def __init__(self, hub: "_core.SensorRadarHub", dimension: int) -> None:
+        """dimension: of the positions that it tells."""
         self._hub = hub
+        self._subject = codec.SPATIAL_TRACKS if dimension == 3 else codec.TRACKS
         self._receiver = Receiver()
 
     def step(
@@ -124,6 +127,6 @@ class InProcessHub:
             if closed is None:
                 return
             time_us, frame, tracks = closed
-            payload = codec.tracks_payload(time_us, frame, tracks)
-            said.append(codec.frame(codec.Transfer(HUB_ID, codec.TRACKS, frame, payload)))
+            payload = codec.tracks_payload(time_us, frame, tracks, codec.TRACK_ROWS[self._subject])
+            said.append(codec.frame(codec.Transfer(HUB_ID, self._subject, frame, payload)))
             shown.extend(taps.items())
