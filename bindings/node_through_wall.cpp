@@ -108,8 +108,13 @@ void bind_target_traces(py::module_& m) {
 }
 
 void bind_leading_edge(py::module_& m) {
+  py::enum_<EdgeRule>(m, "EdgeRule", "What the beginning of an echo is.")
+      .value("fraction", EdgeRule::kFraction, "where the envelope first exceeds a fraction of its largest value")
+      .value("contrast", EdgeRule::kContrast, "where its mean behind exceeds that before it the most");
   ConfigBinder<LeadingEdgeConfig>(m, "LeadingEdgeConfig", "Where an echo begins.")
-      .field("fraction", &LeadingEdgeConfig::fraction, "of the window's largest envelope, in (0, 1)")
+      .field("rule", &LeadingEdgeConfig::rule, "what the beginning of an echo is")
+      .field("fraction", &LeadingEdgeConfig::fraction, "fraction: of the window's largest envelope, in (0, 1)")
+      .field("mean_samples", &LeadingEdgeConfig::mean_samples, "[sample] contrast: of either mean, 1 to 1000")
       .field("before_samples", &LeadingEdgeConfig::before_samples, "[sample] of the window, 0 to 1000")
       .field("after_samples", &LeadingEdgeConfig::after_samples, "[sample] of the window, 0 to 1000");
   py::class_<LeadingEdge>(m, "LeadingEdge", "Moves traces to the beginning of their echoes.")

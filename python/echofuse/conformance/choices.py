@@ -123,6 +123,7 @@ THROUGH_WALL_NODE_CHOICES: tuple[Choice, ...] = (
     *_one("gaussian_cfar.spread", "rms"),
     *_one("target_traces.density_correction", True),
     *_one("leading_edge.fraction", 0.3),
+    *_one("leading_edge.rule", "contrast"),
     Choice(
         name="fewer hits, denser, blind longer",
         settings={

@@ -1,5 +1,7 @@
 """The stages of a through-wall receiver one by one, every choice: core against reference."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -141,9 +143,19 @@ def test_target_traces(window: int, least: int, density_correction: bool) -> Non
     assert n_traces > 60
 
 
-@pytest.mark.parametrize(("fraction", "before", "after"), [(0.5, 4, 13), (0.3, 0, 30), (0.9, 600, 0)])
-def test_leading_edge(fraction: float, before: int, after: int) -> None:
-    config = _core.LeadingEdgeConfig(fraction=fraction, before_samples=before, after_samples=after)
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {},
+        {"fraction": 0.3, "before_samples": 0, "after_samples": 30},
+        {"fraction": 0.9, "before_samples": 600, "after_samples": 0},
+        {"rule": _core.EdgeRule.contrast},
+        {"rule": _core.EdgeRule.contrast, "mean_samples": 1, "before_samples": 40, "after_samples": 40},
+        {"rule": _core.EdgeRule.contrast, "mean_samples": 700, "before_samples": 0, "after_samples": 600},
+    ],
+)
+def test_leading_edge(settings: dict[str, Any]) -> None:
+    config = _core.LeadingEdgeConfig(**settings)
     tracer, core, board, n_moved = _core.TargetTracer(), _core.LeadingEdge(), Scoreboard(), 0
     assert tracer.configure(_core.TargetTraceConfig()) == core.configure(config) == _core.Status.ok
     for seed in range(60):

@@ -86,7 +86,9 @@ constexpr link::RegisterField kThroughWallFields[] = {
     FIELD(target_traces.window_samples),
     FIELD(target_traces.least_hits),
     FIELD(target_traces.density_correction),
+    FIELD(leading_edge.rule),
     FIELD(leading_edge.fraction),
+    FIELD(leading_edge.mean_samples),
     FIELD(leading_edge.before_samples),
     FIELD(leading_edge.after_samples),
 };
