@@ -26,10 +26,13 @@ using link::TrackState;
 /// The taps of one call, by id, copied while they are valid.
 struct TapRecorder {
   py::dict taps;
-  std::size_t columns_of(TapId tap) const { return tap == TapId::kTracks ? 7 : 5; }
+  static std::size_t columns_of(TapId tap) {
+    if (tap == TapId::kTracks) return 7;
+    return tap == TapId::kSpatialTracks ? 9 : 5;
+  }
   static void record(void* context, TapId tap, Span<const float> values) {
     auto& self = *static_cast<TapRecorder*>(context);
-    const std::size_t columns = self.columns_of(tap);
+    const std::size_t columns = columns_of(tap);
     py::array_t<float> rows(
         {static_cast<py::ssize_t>(values.size() / columns), static_cast<py::ssize_t>(columns)});
     std::copy(values.begin(), values.end(), rows.mutable_data());
@@ -37,19 +40,19 @@ struct TapRecorder {
   }
 };
 
-template <class Tracker>
+template <int kDimension, class Tracker>
 py::tuple run(Tracker& self, const FloatArray& measurements, float dt_s) {
   link::Tracks tracks;
-  const auto positions = to_positions<2>(measurements, "measurements");
+  const auto positions = to_positions<kDimension>(measurements, "measurements");
   const Status status = self.process(view(positions), dt_s, tracks);
   return py::make_tuple(status, to_array(tracks));
 }
 
-template <class Tracker>
+template <int kDimension, class Tracker>
 py::tuple run_with_taps(Tracker& self, const FloatArray& measurements, float dt_s) {
   TapRecorder recorder;
   self.set_tap_sink({&TapRecorder::record, &recorder});
-  const py::tuple result = run(self, measurements, dt_s);
+  const py::tuple result = run<kDimension>(self, measurements, dt_s);
   self.set_tap_sink({});
   return py::make_tuple(result[0], result[1], recorder.taps);
 }
@@ -99,7 +102,7 @@ void bind_phd_filter(py::module_& m) {
       .def_property_readonly("peak_seed", &PhdFilter::peak_seed);
 }
 
-void bind_track_manager(py::module_& m) {
+void bind_track_manager_config(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Track, id, state, frames_since_update, x_m, y_m, z_m, vx_mps, vy_mps, vz_mps,
                        covariance_xx_m2, covariance_xy_m2, covariance_yy_m2, covariance_xz_m2,
                        covariance_yz_m2, covariance_zz_m2);
@@ -131,51 +134,74 @@ void bind_track_manager(py::module_& m) {
       .field("acceleration_density_m2ps3", &TrackManagerConfig::acceleration_density_m2ps3, "[m^2/s^3]")
       .field("measurement_std_m", &TrackManagerConfig::measurement_std_m, "[m] of kalman")
       .field("velocity_std_mps", &TrackManagerConfig::velocity_std_mps, "[m/s]");
-  py::class_<TrackManager>(m, "TrackManager", "Tracks from the points of each frame.")
+}
+
+/// From an array (n, 7) or (n, 12): position, velocity, the covariance's lower triangle row by row.
+template <int kDimension>
+std::vector<TrackEstimate<kDimension>> to_estimates(const FloatArray& points) {
+  constexpr std::size_t kColumns = 2 * kDimension + kDimension * (kDimension + 1) / 2;
+  const auto values = as_span_of_rows(points, kColumns, "points");
+  std::vector<TrackEstimate<kDimension>> estimates;
+  for (const float* value = values.begin(); value != values.end();) {
+    TrackEstimate<kDimension>& estimate = estimates.emplace_back();
+    for (float& coordinate : estimate.position_m) coordinate = *value++;
+    for (float& coordinate : estimate.velocity_mps) coordinate = *value++;
+    for (int r = 0; r < kDimension; ++r)
+      for (int c = 0; c <= r; ++c) estimate.covariance_m2(r, c) = estimate.covariance_m2(c, r) = *value++;
+  }
+  return estimates;
+}
+
+template <int kDimension>
+void bind_track_manager(py::module_& m, const char* name, const char* layout) {
+  using Manager = TrackManager<kDimension>;
+  py::class_<Manager>(m, name, "Tracks from the points of each frame.")
       .def(py::init<>())
-      .def("configure", &TrackManager::configure, py::arg("config"))
-      .def("reset", &TrackManager::reset)
+      .def("configure", &Manager::configure, py::arg("config"))
+      .def("reset", &Manager::reset)
       .def(
           "process",
-          [](TrackManager& self, const FloatArray& points, float dt_s) {
-            const auto rows = as_span_of_rows(points, 7, "points");
-            std::vector<TrackEstimate> estimates;
-            for (std::size_t i = 0; i < rows.size(); i += 7)
-              estimates.push_back(
-                  {rows[i], rows[i + 1], rows[i + 2], rows[i + 3], rows[i + 4], rows[i + 5], rows[i + 6]});
+          [](Manager& self, const FloatArray& points, float dt_s) {
+            const auto estimates = to_estimates<kDimension>(points);
             link::Tracks tracks;
             const Status status = self.process(view(estimates), dt_s, tracks);
             return py::make_tuple(status, to_array(tracks));
           },
           py::arg("points").noconvert(), py::arg("dt_s"),
-          "(status, structured array of Track) of points (n, 7): x, y, vx, vy, covariance xx, xy, yy.")
+          (std::string("(status, structured array of Track) of points ") + layout).c_str())
       .def_property_readonly("point_of_track",
-                             [](const TrackManager& self) { return to_array(self.point_of_track()); })
-      .def_property_readonly("dropped_births", &TrackManager::dropped_births);
+                             [](const Manager& self) { return to_array(self.point_of_track()); })
+      .def_property_readonly("dropped_births", &Manager::dropped_births);
 }
 
-void bind_trackers(py::module_& m) {
+void bind_phd_tracker(py::module_& m) {
   py::class_<PhdTracker>(m, "PhdTracker", "Particle PHD filter, its peaks, tracks.")
       .def(py::init<>())
       .def("configure", &PhdTracker::configure, py::arg("phd"), py::arg("em"), py::arg("tracks"))
       .def("reset", &PhdTracker::reset)
-      .def("process", &run<PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
+      .def("process", &run<2, PhdTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
            "(status, structured array of Track) of measurements (m, 2) [m].")
-      .def("process_with_taps", &run_with_taps<PhdTracker>, py::arg("measurements").noconvert(),
+      .def("process_with_taps", &run_with_taps<2, PhdTracker>, py::arg("measurements").noconvert(),
            py::arg("dt_s"), "(status, tracks, taps): taps by TapId, each (n, columns).")
       .def_property_readonly("mass", [](const PhdTracker& self) { return self.phd().mass(); })
       .def_property_readonly("dropped_births",
                              [](const PhdTracker& self) { return self.manager().dropped_births(); });
-  py::class_<KalmanTracker>(m, "KalmanTracker", "A Kalman filter a track and global nearest neighbour.")
+}
+
+template <int kDimension>
+void bind_kalman_tracker(py::module_& m, const char* name) {
+  using Tracker = KalmanTracker<kDimension>;
+  const std::string shape = "(m, " + std::to_string(kDimension) + ")";
+  py::class_<Tracker>(m, name, "A Kalman filter a track and global nearest neighbour.")
       .def(py::init<>())
-      .def("configure", &KalmanTracker::configure, py::arg("config"))
-      .def("reset", &KalmanTracker::reset)
-      .def("process", &run<KalmanTracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
-           "(status, structured array of Track) of measurements (m, 2) [m].")
-      .def("process_with_taps", &run_with_taps<KalmanTracker>, py::arg("measurements").noconvert(),
+      .def("configure", &Tracker::configure, py::arg("config"))
+      .def("reset", &Tracker::reset)
+      .def("process", &run<kDimension, Tracker>, py::arg("measurements").noconvert(), py::arg("dt_s"),
+           ("(status, structured array of Track) of measurements " + shape + " [m].").c_str())
+      .def("process_with_taps", &run_with_taps<kDimension, Tracker>, py::arg("measurements").noconvert(),
            py::arg("dt_s"), "(status, tracks, taps): taps by TapId, each (n, columns).")
       .def_property_readonly("dropped_births",
-                             [](const KalmanTracker& self) { return self.manager().dropped_births(); });
+                             [](const Tracker& self) { return self.manager().dropped_births(); });
 }
 
 void bind_range_tracker(py::module_& m) {
@@ -261,8 +287,13 @@ void bind_range_tracker(py::module_& m) {
 
 void bind_hub_track(py::module_& m) {
   bind_phd_filter(m);
-  bind_track_manager(m);
-  bind_trackers(m);
+  bind_track_manager_config(m);
+  bind_track_manager<2>(m, "TrackManager", "(n, 7): x, y, vx, vy, covariance xx, xy, yy.");
+  bind_track_manager<3>(m, "TrackManager3d",
+                        "(n, 12): x, y, z, vx, vy, vz, covariance xx, xy, yy, xz, yz, zz.");
+  bind_phd_tracker(m);
+  bind_kalman_tracker<2>(m, "KalmanTracker");
+  bind_kalman_tracker<3>(m, "KalmanTracker3d");
   bind_range_tracker(m);
 }
 

@@ -46,6 +46,7 @@ __all__: list[str] = [
     "GaussianCfarConfig",
     "GaussianCfarDetector",
     "KalmanTracker",
+    "KalmanTracker3d",
     "LIMITS",
     "LeadingEdge",
     "LeadingEdgeConfig",
@@ -116,6 +117,7 @@ __all__: list[str] = [
     "TracePairing",
     "TracePairingConfig",
     "TrackManager",
+    "TrackManager3d",
     "TrackManagerConfig",
     "TrackState",
     "TrackUpdate",
@@ -3736,6 +3738,24 @@ class TrackManager:
     @property
     def point_of_track(self) -> numpy.typing.NDArray[numpy.int32]: ...
 
+class TrackManager3d:
+    """
+    Tracks from the points of each frame.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: TrackManagerConfig) -> Status: ...
+    def process(
+        self, points: numpy.typing.NDArray[numpy.float32], dt_s: typing.SupportsFloat | typing.SupportsIndex
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.void]]:
+        """
+        (status, structured array of Track) of points (n, 12): x, y, z, vx, vy, vz, covariance xx, xy, yy, xz, yz, zz.
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+    @property
+    def point_of_track(self) -> numpy.typing.NDArray[numpy.int32]: ...
+
 class PhdTracker:
     """
     Particle PHD filter, its peaks, tracks.
@@ -3777,6 +3797,32 @@ class KalmanTracker:
     ) -> tuple:
         """
         (status, structured array of Track) of measurements (m, 2) [m].
+        """
+    def process_with_taps(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, tracks, taps): taps by TapId, each (n, columns).
+        """
+    def reset(self) -> None: ...
+    @property
+    def dropped_births(self) -> int: ...
+
+class KalmanTracker3d:
+    """
+    A Kalman filter a track and global nearest neighbour.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: TrackManagerConfig) -> Status: ...
+    def process(
+        self,
+        measurements: numpy.typing.NDArray[numpy.float32],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple:
+        """
+        (status, structured array of Track) of measurements (m, 3) [m].
         """
     def process_with_taps(
         self,

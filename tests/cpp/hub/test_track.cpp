@@ -34,13 +34,14 @@ struct TapCount {
 TEST_CASE("memory of a PHD tracker is what the limits say") {
   // 3,072 particles of 20 bytes and scratch of 24 KB.
   CHECK(sizeof(PhdTracker) < 100000);
-  CHECK(sizeof(KalmanTracker) < 8000);
+  CHECK(sizeof(KalmanTracker<2>) < 8000);
+  CHECK(sizeof(KalmanTracker<3>) < 11000);
 }
 
 TEST_CASE("a walking person becomes one confirmed track with the right velocity") {
   static PhdTracker phd;
   REQUIRE(phd.configure({}, {}, {}) == Status::kOk);
-  KalmanTracker kalman;
+  KalmanTracker<2> kalman;
   REQUIRE(kalman.configure({}) == Status::kOk);
   link::Tracks by_phd;
   link::Tracks by_kalman;
@@ -56,6 +57,30 @@ TEST_CASE("a walking person becomes one confirmed track with the right velocity"
     CHECK(track.vx_mps == doctest::Approx(1.0).epsilon(0.3));
     CHECK(std::fabs(track.vy_mps) < 0.3f);
   }
+}
+
+TEST_CASE("in space, one who climbs above another is another track, and climbs") {
+  KalmanTracker<3> tracker;
+  REQUIRE(tracker.configure({}) == Status::kOk);
+  TapCount count;
+  tracker.set_tap_sink({&TapCount::count, &count});
+  link::Tracks tracks;
+  for (int frame = 0; frame < 40; ++frame) {
+    const std::array<Eigen::Vector3f, 2> measured{
+        {{1.0f, 2.0f, 0.9f}, {1.0f, 2.0f, 2.5f + 0.05f * static_cast<float>(frame)}}};
+    REQUIRE(tracker.process({measured.data(), measured.size()}, kDt_s, tracks) == Status::kOk);
+  }
+  REQUIRE(tracks.tracks.size() == 2);
+  const link::Track& below = tracks.tracks[0];
+  const link::Track& above = tracks.tracks[1];
+  CHECK(below.state == link::TrackState::kConfirmed);
+  CHECK(above.state == link::TrackState::kConfirmed);
+  CHECK(below.z_m == doctest::Approx(0.9));
+  CHECK(above.z_m == doctest::Approx(4.45).epsilon(0.02));
+  CHECK(above.vz_mps == doctest::Approx(0.5).epsilon(0.2));
+  CHECK(std::fabs(below.vz_mps) < 0.1f);
+  CHECK(above.covariance_zz_m2 > 0.0f);
+  CHECK(count.last_size == 9 * tracks.tracks.size());
 }
 
 TEST_CASE("reset gives the same tracks again") {
@@ -103,11 +128,11 @@ TEST_CASE("an impossible configuration leaves all earlier ones in force") {
 }
 
 TEST_CASE("with more births than room the rest is counted") {
-  TrackManager manager;
+  TrackManager<2> manager;
   REQUIRE(manager.configure({}) == Status::kOk);
-  std::array<TrackEstimate, kMaxTracks + 3> points{};
+  std::array<TrackEstimate<2>, kMaxTracks + 3> points;
   for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = {5.0f * static_cast<float>(i), 0.0f, 0.0f, 0.0f, 0.01f, 0.0f, 0.01f};
+    points[i] = {{5.0f * static_cast<float>(i), 0.0f}, {0.0f, 0.0f}, 0.01f * Eigen::Matrix2f::Identity()};
   link::Tracks tracks;
   CHECK(manager.process({points.data(), points.size()}, kDt_s, tracks) == Status::kTruncated);
   CHECK(tracks.tracks.size() == kMaxTracks);

@@ -91,7 +91,7 @@ class SensorRadarHub {
   MeasurementSelection selection_;
   PointClusters point_clusters_;
   PhdTracker phd_tracker_;
-  KalmanTracker kalman_tracker_;
+  KalmanTracker<2> kalman_tracker_;
   RangeTracker range_tracker_;
 
   Frame frame_;

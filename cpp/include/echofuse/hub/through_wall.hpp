@@ -101,7 +101,7 @@ class ThroughWallHub {
   TracePairing trace_pairing_;
   LineLocator line_locator_;
   PathTracker path_tracker_;
-  KalmanTracker kalman_tracker_;
+  KalmanTracker<2> kalman_tracker_;
   Point tx_;                                        ///< origin of the stages
   std::array<float, kMaxArrayReceivers> rx_x_m_{};  ///< from there
   std::size_t first_ = 0, last_ = 0;                ///< the receivers farthest apart

@@ -6,7 +6,7 @@
 
 #include "echofuse/core/constants.hpp"
 #include "measure/show_frame.hpp"
-#include "track/show_tracks.hpp"
+#include "track/report_tracks.hpp"
 
 namespace echofuse::hub {
 namespace {
@@ -124,7 +124,7 @@ Status ThroughWallHub::poll(std::int64_t now_us, link::Tracks& tracks, bool& clo
   if (const Status tracked = track(dt_s, tracks); tracked != Status::kOk) status = tracked;
   tracks.time_us = frame_.time_us;
   tracks.frame = frame_.frame;
-  show_tracks(taps_, tracks);
+  show_tracks<2>(taps_, tracks);
   return status;
 }
 

@@ -221,7 +221,6 @@ def phd_margins(step: PhdStep) -> dict[str, float]:
 def track_rows(step: Step | RangeStep) -> Array:
     """(t, 7): id, state, x, y, vx, vy, frames since the last update."""
     rows = [
-        (t.id, t.state, *t.filter.state[[0, 2]], *t.filter.state[[1, 3]], t.frames_since_update)
-        for t in step.tracks
+        (t.id, t.state, *t.filter.position, *t.filter.velocity, t.frames_since_update) for t in step.tracks
     ]
     return np.array(rows, dtype=np.float64).reshape(-1, 7)

@@ -30,14 +30,14 @@ class PhdTracker {
 
   void set_tap_sink(const TapSink& sink) { sink_ = sink; }
   const PhdFilter& phd() const { return phd_; }
-  const TrackManager& manager() const { return manager_; }
+  const TrackManager<2>& manager() const { return manager_; }
 
  private:
   void show_peaks() const;
 
   PhdFilter phd_;
   estimation::MixtureFitter fitter_;
-  TrackManager manager_;
+  TrackManager<2> manager_;
   estimation::Mixture mixture_;
   TapSink sink_;
 };

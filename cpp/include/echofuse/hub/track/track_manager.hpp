@@ -46,31 +46,23 @@ struct TrackManagerConfig {
 const char* invalid_field(const TrackManagerConfig& config);
 
 /// A point of this frame; velocity 0 when it is a bare measurement.
+template <int kDimension>
 struct TrackEstimate {
-  float x_m, y_m;
-  float vx_mps, vy_mps;
-  float covariance_xx_m2, covariance_xy_m2, covariance_yy_m2;
-};
-
-/// One track as the manager keeps it.
-struct ManagedTrack {
-  std::int32_t id = 0;
-  link::TrackState state = link::TrackState::kUnconfirmed;
-  int updates = 1;  ///< consecutive frames with a point, until confirmed
-  std::int32_t frames_since_update = 0;
-  float confirmed_time_s = 0.0f;  ///< [s] for which it was updated since its confirmation
-  float silent_time_s = 0.0f;     ///< [s] since its last point
-  float motion = 1.0f;            ///< [1] what is left of the motion of a silent track
-  estimation::ConstantVelocityFilter<2> filter;
+  Eigen::Matrix<float, kDimension, 1> position_m;
+  Eigen::Matrix<float, kDimension, 1> velocity_mps;
+  Eigen::Matrix<float, kDimension, kDimension> covariance_m2;  ///< of the position
 };
 
 /// Tracks from the points of each frame, by their identities and states (section V-E of the sensor-radar
 /// paper): unconfirmed -> confirmed after some consecutive points, dead at the first miss; confirmed ->
 /// silent at a miss; silent -> confirmed at a point, dead after a time. A silent track comes to rest where it
-/// was and its gate grows slowly, so a person who stops keeps the identity. Reference:
-/// python/echofuse/reference/hub/track/track_manager.py
+/// was and its gate grows slowly, so a person who stops keeps the identity. In the plane or in space.
+/// Reference: python/echofuse/reference/hub/track/track_manager.py
+template <int kDimension>
 class TrackManager {
  public:
+  using Estimate = TrackEstimate<kDimension>;
+
   /// Also resets. kInvalidConfig: the earlier configuration and state stay in force.
   Status configure(const TrackManagerConfig& config);
   void reset();
@@ -78,25 +70,38 @@ class TrackManager {
   /// points: finite. dt_s: [s] > 0 since the last frame. tracks.tracks: filled with all that live, ascending
   /// id; its time and frame stay the caller's. kTruncated: points beyond kMaxAssignment were ignored, or a
   /// track could not begin; what is there is valid. kInvalidInput: nothing changes, no tracks.
-  Status process(Span<const TrackEstimate> points, float dt_s, link::Tracks& tracks);
-
-  Span<const ManagedTrack> tracks() const { return tracks_.span(); }
+  Status process(Span<const Estimate> points, float dt_s, link::Tracks& tracks);
 
   /// (n tracks before the last frame,) the point that each got, or estimation::kUnassigned.
   Span<const int> point_of_track() const { return {point_of_track_.data(), n_associated_}; }
   std::uint32_t dropped_births() const { return dropped_births_; }  ///< tracks for which there was no room
 
  private:
+  using Filter = estimation::ConstantVelocityFilter<kDimension>;
+
+  struct ManagedTrack {
+    std::int32_t id = 0;
+    link::TrackState state = link::TrackState::kUnconfirmed;
+    int updates = 1;  ///< consecutive frames with a point, until confirmed
+    std::int32_t frames_since_update = 0;
+    float confirmed_time_s = 0.0f;  ///< [s] for which it was updated since its confirmation
+    float silent_time_s = 0.0f;     ///< [s] since its last point
+    float motion = 1.0f;            ///< [1] what is left of the motion of a silent track
+    Filter filter;
+  };
+
+  static float distance_m(const ManagedTrack& track, const Estimate& point);
   void predict(ManagedTrack& track, float dt_s) const;
-  void associate(Span<const TrackEstimate> points);
-  void associate_per_pair(Span<const TrackEstimate> points);
-  void associate_by_hypothesis(Span<const TrackEstimate> points);
+  void associate(Span<const Estimate> points);
+  void associate_per_pair(Span<const Estimate> points);
+  void associate_by_hypothesis(Span<const Estimate> points);
   float gate_m(const ManagedTrack& track) const;
-  bool within_sigma(const ManagedTrack& track, const TrackEstimate& point) const;
-  bool hit(ManagedTrack& track, const TrackEstimate& point, float dt_s) const;
+  bool within_sigma(const ManagedTrack& track, const Estimate& point) const;
+  bool hit(ManagedTrack& track, const Estimate& point, float dt_s) const;
   bool miss(ManagedTrack& track, float dt_s) const;
-  bool begin(const TrackEstimate& point);
-  estimation::ConstantVelocityFilter<2> filter_of(const TrackEstimate& point) const;
+  bool begin(const Estimate& point);
+  Filter filter_of(const Estimate& point) const;
+  typename Filter::PositionCovariance measurement_covariance() const;
   void report(link::Tracks& tracks) const;
 
   TrackManagerConfig config_{};

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "show_tracks.hpp"
+#include "report_tracks.hpp"
 
 namespace echofuse::hub {
 namespace {
@@ -44,17 +44,18 @@ Status PhdTracker::process(Span<const Eigen::Vector2f> measurements, float dt_s,
   Pcg32 random(phd_.peak_seed());
   (void)fitter_.process(phd_.persistent(), phd_.seeds(), phd_.number(), random, mixture_);
   show_peaks();
-  BoundedVector<TrackEstimate, kMaxTargets> peaks;
+  BoundedVector<TrackEstimate<2>, kMaxTargets> peaks;
   for (const estimation::MixtureComponent& c : mixture_.components) {
     if (!(c.share > 0.0f)) continue;
-    ECHOFUSE_CHECK(peaks.try_push_back(
-        {c.x_m, c.y_m, c.vx_mps, c.vy_mps, c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_yy_m2}));
+    Eigen::Matrix2f covariance;
+    covariance << c.covariance_xx_m2, c.covariance_xy_m2, c.covariance_xy_m2, c.covariance_yy_m2;
+    ECHOFUSE_CHECK(peaks.try_push_back({{c.x_m, c.y_m}, {c.vx_mps, c.vy_mps}, covariance}));
   }
 
   (void)phd_.resample();
   sink_(TapId::kResampled, estimation::as_rows(phd_.particles()));
   const Status tracked = manager_.process(peaks.span(), dt_s, tracks);
-  show_tracks(sink_, tracks);
+  show_tracks<2>(sink_, tracks);
   return tracked == Status::kOk ? updated : tracked;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "echofuse/core/check.hpp"
-#include "show_tracks.hpp"
+#include "report_tracks.hpp"
 
 namespace echofuse::hub {
 namespace {
@@ -64,7 +64,7 @@ Status RangeTracker::process(Span<const FrameDetection> detections, float dt_s, 
   choose_people();
   const bool all_began = begin_tracks();
   report(tracks);
-  show_tracks(sink_, tracks);
+  show_tracks<2>(sink_, tracks);
   return all_began ? Status::kOk : Status::kTruncated;
 }
 
@@ -254,13 +254,11 @@ bool RangeTracker::begin_at(const Point& place) {
 
 void RangeTracker::report(link::Tracks& tracks) const {
   for (const RangeTrack& track : tracks_) {
-    const auto& x = track.filter.state();
-    const auto& p = track.filter.covariance();
     link::TrackState state = link::TrackState::kUnconfirmed;
     if (track.confirmed)
       state = track.frames_since_update == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
-    ECHOFUSE_CHECK(tracks.tracks.try_push_back({track.id, state, track.frames_since_update, x(0), x(2), 0.0f,
-                                                x(1), x(3), 0.0f, p(0, 0), p(0, 2), p(2, 2)}));
+    ECHOFUSE_CHECK(
+        tracks.tracks.try_push_back(to_message(track.id, state, track.frames_since_update, track.filter)));
     for (std::size_t i = tracks.tracks.size() - 1; i > 0 && tracks.tracks[i].id < tracks.tracks[i - 1].id;
          --i)
       std::swap(tracks.tracks[i], tracks.tracks[i - 1]);

@@ -4,27 +4,15 @@
 #include <cmath>
 
 #include "echofuse/estimation/assignment.hpp"
+#include "report_tracks.hpp"
 
 namespace echofuse::hub {
 namespace {
 
-using Filter = estimation::ConstantVelocityFilter<2>;
 using estimation::kUnassigned;
 using link::TrackState;
 
 bool within(float value, float least, float most) { return value >= least && value <= most; }
-
-bool is_finite(const TrackEstimate& p) {
-  return std::isfinite(p.x_m) && std::isfinite(p.y_m) && std::isfinite(p.vx_mps) && std::isfinite(p.vy_mps) &&
-         std::isfinite(p.covariance_xx_m2) && std::isfinite(p.covariance_xy_m2) &&
-         std::isfinite(p.covariance_yy_m2);
-}
-
-float distance_m(const ManagedTrack& track, const TrackEstimate& point) {
-  return (Eigen::Vector2f(point.x_m, point.y_m) - track.filter.position()).norm();
-}
-
-Eigen::Matrix2f isotropic(float std_m) { return Eigen::Matrix2f::Identity() * (std_m * std_m); }
 
 }  // namespace
 
@@ -51,7 +39,8 @@ const char* invalid_field(const TrackManagerConfig& config) {
   return nullptr;
 }
 
-Status TrackManager::configure(const TrackManagerConfig& config) {
+template <int kDimension>
+Status TrackManager<kDimension>::configure(const TrackManagerConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   config_ = config;
   configured_ = true;
@@ -59,19 +48,22 @@ Status TrackManager::configure(const TrackManagerConfig& config) {
   return Status::kOk;
 }
 
-void TrackManager::reset() {
+template <int kDimension>
+void TrackManager<kDimension>::reset() {
   tracks_.clear();
   next_id_ = 1;
   dropped_births_ = 0;
   n_associated_ = 0;
 }
 
-Status TrackManager::process(Span<const TrackEstimate> points, float dt_s, link::Tracks& tracks) {
+template <int kDimension>
+Status TrackManager<kDimension>::process(Span<const Estimate> points, float dt_s, link::Tracks& tracks) {
   tracks.tracks.clear();
   if (!configured_) return Status::kNotConfigured;
   if (!(dt_s > 0.0f) || !std::isfinite(dt_s)) return Status::kInvalidInput;
-  for (const TrackEstimate& point : points)
-    if (!is_finite(point)) return Status::kInvalidInput;
+  for (const Estimate& point : points)
+    if (!point.position_m.allFinite() || !point.velocity_mps.allFinite() || !point.covariance_m2.allFinite())
+      return Status::kInvalidInput;
   bool truncated = points.size() > kMaxAssignment;
   const auto used = points.first(std::min(points.size(), kMaxAssignment));
 
@@ -93,7 +85,8 @@ Status TrackManager::process(Span<const TrackEstimate> points, float dt_s, link:
   return truncated ? Status::kTruncated : Status::kOk;
 }
 
-void TrackManager::predict(ManagedTrack& track, float dt_s) const {
+template <int kDimension>
+void TrackManager<kDimension>::predict(ManagedTrack& track, float dt_s) const {
   float decay = 1.0f;
   if (track.state == TrackState::kSilent)
     decay = config_.silent_velocity_time_s / (config_.silent_velocity_time_s + dt_s);
@@ -101,7 +94,8 @@ void TrackManager::predict(ManagedTrack& track, float dt_s) const {
   track.filter.predict(dt_s, config_.acceleration_density_m2ps3 * track.motion, decay);
 }
 
-void TrackManager::associate(Span<const TrackEstimate> points) {
+template <int kDimension>
+void TrackManager<kDimension>::associate(Span<const Estimate> points) {
   n_associated_ = tracks_.size();
   std::fill_n(point_of_track_.begin(), n_associated_, kUnassigned);
   if (tracks_.empty() || points.empty()) return;
@@ -113,7 +107,8 @@ void TrackManager::associate(Span<const TrackEstimate> points) {
 
 /// A pair costs its distance, at most the track's gate; a pair at the gate is none. So the assignment weighs
 /// a far pair against no pair at all.
-void TrackManager::associate_per_pair(Span<const TrackEstimate> points) {
+template <int kDimension>
+void TrackManager<kDimension>::associate_per_pair(Span<const Estimate> points) {
   const std::size_t n = points.size();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const float gate = gate_m(tracks_[i]);
@@ -133,7 +128,8 @@ void TrackManager::associate_per_pair(Span<const TrackEstimate> points) {
   }
 }
 
-void TrackManager::associate_by_hypothesis(Span<const TrackEstimate> points) {
+template <int kDimension>
+void TrackManager<kDimension>::associate_by_hypothesis(Span<const Estimate> points) {
   const std::size_t n = points.size();
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     for (std::size_t p = 0; p < n; ++p) cost_[i * n + p] = distance_m(tracks_[i], points[p]);
@@ -154,21 +150,28 @@ void TrackManager::associate_by_hypothesis(Span<const TrackEstimate> points) {
   }
 }
 
-float TrackManager::gate_m(const ManagedTrack& track) const {
+template <int kDimension>
+float TrackManager<kDimension>::distance_m(const ManagedTrack& track, const Estimate& point) {
+  return (point.position_m - track.filter.position()).norm();
+}
+
+template <int kDimension>
+float TrackManager<kDimension>::gate_m(const ManagedTrack& track) const {
   const float grown = config_.gate_m + config_.silent_gate_growth_mps * track.silent_time_s;
   return std::max(config_.gate_m, std::min(grown, config_.silent_gate_max_m));
 }
 
-bool TrackManager::within_sigma(const ManagedTrack& track, const TrackEstimate& point) const {
+template <int kDimension>
+bool TrackManager<kDimension>::within_sigma(const ManagedTrack& track, const Estimate& point) const {
   if (config_.update == TrackUpdate::kEstimate || config_.gate_sigma == 0.0f) return true;
-  const float squared =
-      track.filter.squared_distance({point.x_m, point.y_m}, isotropic(config_.measurement_std_m));
+  const float squared = track.filter.squared_distance(point.position_m, measurement_covariance());
   return squared < config_.gate_sigma * config_.gate_sigma;
 }
 
-bool TrackManager::hit(ManagedTrack& track, const TrackEstimate& point, float dt_s) const {
+template <int kDimension>
+bool TrackManager<kDimension>::hit(ManagedTrack& track, const Estimate& point, float dt_s) const {
   if (config_.update == TrackUpdate::kKalman)
-    track.filter.update({point.x_m, point.y_m}, isotropic(config_.measurement_std_m));
+    track.filter.update(point.position_m, measurement_covariance());
   else
     track.filter = filter_of(point);
   track.frames_since_update = 0;
@@ -185,7 +188,8 @@ bool TrackManager::hit(ManagedTrack& track, const TrackEstimate& point, float dt
 
 /// False when the track dies of this frame without a point. Times are multiples of the frame's duration, so
 /// they are compared half a frame apart.
-bool TrackManager::miss(ManagedTrack& track, float dt_s) const {
+template <int kDimension>
+bool TrackManager<kDimension>::miss(ManagedTrack& track, float dt_s) const {
   if (track.state == TrackState::kUnconfirmed) return false;
   track.state = TrackState::kSilent;
   ++track.frames_since_update;
@@ -196,7 +200,8 @@ bool TrackManager::miss(ManagedTrack& track, float dt_s) const {
 }
 
 /// False when there is no room for a track that should begin.
-bool TrackManager::begin(const TrackEstimate& point) {
+template <int kDimension>
+bool TrackManager<kDimension>::begin(const Estimate& point) {
   for (const ManagedTrack& track : tracks_)
     if (distance_m(track, point) < config_.birth_exclusion_m) return true;
   ManagedTrack track;
@@ -211,22 +216,26 @@ bool TrackManager::begin(const TrackEstimate& point) {
   return true;
 }
 
-Filter TrackManager::filter_of(const TrackEstimate& point) const {
-  Eigen::Matrix2f covariance;
-  covariance << point.covariance_xx_m2, point.covariance_xy_m2,  //
-      point.covariance_xy_m2, point.covariance_yy_m2;
-  return Filter::at({point.x_m, point.y_m}, covariance, {point.vx_mps, point.vy_mps},
-                    config_.velocity_std_mps);
+template <int kDimension>
+typename TrackManager<kDimension>::Filter TrackManager<kDimension>::filter_of(const Estimate& point) const {
+  return Filter::at(point.position_m, point.covariance_m2, point.velocity_mps, config_.velocity_std_mps);
 }
 
-void TrackManager::report(link::Tracks& tracks) const {
-  for (const ManagedTrack& track : tracks_) {
-    const auto& state = track.filter.state();
-    const auto& covariance = track.filter.covariance();
-    ECHOFUSE_CHECK(tracks.tracks.try_push_back({track.id, track.state, track.frames_since_update, state(0),
-                                                state(2), 0.0f, state(1), state(3), 0.0f, covariance(0, 0),
-                                                covariance(0, 2), covariance(2, 2)}));
-  }
+/// Of a bare point.
+template <int kDimension>
+typename TrackManager<kDimension>::Filter::PositionCovariance
+TrackManager<kDimension>::measurement_covariance() const {
+  return Filter::PositionCovariance::Identity() * (config_.measurement_std_m * config_.measurement_std_m);
 }
+
+template <int kDimension>
+void TrackManager<kDimension>::report(link::Tracks& tracks) const {
+  for (const ManagedTrack& track : tracks_)
+    ECHOFUSE_CHECK(tracks.tracks.try_push_back(
+        to_message(track.id, track.state, track.frames_since_update, track.filter)));
+}
+
+template class TrackManager<2>;
+template class TrackManager<3>;
 
 }  // namespace echofuse::hub

@@ -17,7 +17,7 @@ class KalmanTracker:
         self.manager = TrackManager(config, max_tracks)
 
     def process(self, measurements: NDArray[np.float64], dt_s: float) -> Step:
-        """Take in the points (m, 2) [m] of one frame, ``dt_s`` after the last one."""
-        covariance = self.manager.config.measurement_std_m**2 * np.eye(2)
-        points = [TrackEstimate(z, np.zeros(2), covariance) for z in measurements]
+        """Take in the points (m, 2) or (m, 3) [m] of one frame, ``dt_s`` after the last one."""
+        covariance = self.manager.config.measurement_std_m**2 * np.eye(measurements.shape[1])
+        points = [TrackEstimate(z, np.zeros_like(z), covariance) for z in measurements]
         return self.manager.process(points, dt_s)

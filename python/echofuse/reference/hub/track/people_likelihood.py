@@ -91,7 +91,7 @@ class PeopleLikelihood:
         Those are straight back from the newest, the less sure the further. Returns the nearest decision [m].
         """
         c, edge = self.config, np.inf
-        position, velocity = filter_.state[[0, 2]], filter_.state[[1, 3]]
+        position, velocity = filter_.position, filter_.velocity
         spread = filter_.covariance
         back_s = np.concatenate([[0.0], np.cumsum(self.dt_s)])
         oldest = 0 if age is None else len(self.frames) - 1

@@ -45,11 +45,11 @@ class RangeTrack:
 
     @property
     def position_m(self) -> Array:
-        return np.asarray(self.filter.state[[0, 2]])
+        return self.filter.position
 
     @property
     def velocity_mps(self) -> Array:
-        return np.asarray(self.filter.state[[1, 3]])
+        return self.filter.velocity
 
 
 class RangeStep(NamedTuple):
@@ -99,8 +99,9 @@ class RangeTracker:
         return path_gradient(track.position_m, self.site.tx_m[node], self.site.rx_m[node], self.radius_m)
 
     def _path_std_m(self, track: RangeTrack, node: int) -> float:
-        shown = self._gradient(track, node) @ np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
-        return float(np.sqrt(shown @ track.filter.covariance @ shown + self.config.path_std_m**2))
+        direction = self._gradient(track, node)
+        variance = direction @ track.filter.position_covariance @ direction
+        return float(np.sqrt(variance + self.config.path_std_m**2))
 
     def _predict(self, dt_s: float) -> None:
         """Move all tracks, and put them in order."""
@@ -225,9 +226,8 @@ class RangeTracker:
             distance = float(np.linalg.norm(track.position_m - place_m))
             if self._decide(c.birth_exclusion_m, distance):
                 return False
-        variances = np.array([c.newborn_position_std_m, c.newborn_velocity_std_mps] * 2) ** 2
-        state = np.array([place_m[0], 0.0, place_m[1], 0.0])
-        filter_ = ConstantVelocityFilter(state, np.diag(variances))
+        covariance = c.newborn_position_std_m**2 * np.eye(2)
+        filter_ = ConstantVelocityFilter.at(place_m, covariance, np.zeros(2), c.newborn_velocity_std_mps)
         track = RangeTrack(self.next_id, filter_, Trail(len(self.site.tx_m)))
         score = self._follow(track)
         if not self._decide(score, c.birth_score) or track.n_own == 0:  # 0: where all nodes are blind

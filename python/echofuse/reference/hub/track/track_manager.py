@@ -43,11 +43,11 @@ class TrackManagerConfig(Protocol):
 
 
 class TrackEstimate(NamedTuple):
-    """A point of this frame; without velocity (0, 0) when it is a bare measurement."""
+    """A point of this frame, in d = 2 or 3 dimensions; its velocity is 0 when it is a bare measurement."""
 
-    position: NDArray[np.float64]  # (2,) [m]
-    velocity: NDArray[np.float64]  # (2,) [m/s]
-    covariance: NDArray[np.float64]  # (2, 2) [m^2] of the position
+    position: NDArray[np.float64]  # (d,) [m]
+    velocity: NDArray[np.float64]  # (d,) [m/s]
+    covariance: NDArray[np.float64]  # (d, d) [m^2] of the position
 
 
 @dataclass
@@ -137,13 +137,13 @@ class TrackManager:
         return columns, float(margin)
 
     def _distance(self, track: Track, point: TrackEstimate) -> float:
-        return float(np.linalg.norm(point.position - track.filter.state[[0, 2]]))
+        return float(np.linalg.norm(point.position - track.filter.position))
 
     def _within_sigma(self, track: Track, point: TrackEstimate) -> bool:
         if self.config.gate_sigma == 0.0 or self.config.update == "estimate":
             return True
-        innovation = point.position - track.filter.state[[0, 2]]
-        covariance = track.filter.innovation_covariance(self.config.measurement_std_m**2 * np.eye(2))
+        innovation = point.position - track.filter.position
+        covariance = track.filter.innovation_covariance(self._measurement_covariance(point))
         return bool(innovation @ np.linalg.solve(covariance, innovation) < self.config.gate_sigma**2)
 
     def _silence_margin(self, track: Track, dt_s: float) -> float:
@@ -167,7 +167,7 @@ class TrackManager:
 
     def _hit(self, track: Track, point: TrackEstimate, dt_s: float) -> bool:
         if self.config.update == "kalman":
-            track.filter.update(point.position, self.config.measurement_std_m**2 * np.eye(2))
+            track.filter.update(point.position, self._measurement_covariance(point))
         else:
             track.filter = self._filter_of(point)
         track.updates += 1
@@ -181,10 +181,12 @@ class TrackManager:
         return True
 
     def _filter_of(self, point: TrackEstimate) -> ConstantVelocityFilter:
-        state = np.array([point.position[0], point.velocity[0], point.position[1], point.velocity[1]])
-        covariance = np.diag([0.0, self.config.velocity_std_mps**2, 0.0, self.config.velocity_std_mps**2])
-        covariance[np.ix_([0, 2], [0, 2])] = point.covariance
-        return ConstantVelocityFilter(state, covariance)
+        std_mps = self.config.velocity_std_mps
+        return ConstantVelocityFilter.at(point.position, point.covariance, point.velocity, std_mps)
+
+    def _measurement_covariance(self, point: TrackEstimate) -> NDArray[np.float64]:
+        """Of a bare point."""
+        return np.asarray(self.config.measurement_std_m**2 * np.eye(len(point.position)))
 
     def _begin(self, point: TrackEstimate) -> float:
         """Begin a track unless it is too near to another; return the margin of that decision."""
