@@ -21,6 +21,7 @@ void bind_limits(py::module_& m) {
   py::dict limits;
   const auto add = [&limits](const char* key, std::size_t value) { limits[key] = value; };
   add("max_samples_per_scan", kMaxSamplesPerScan);
+  add("max_response_samples", kMaxResponseSamples);
   add("max_hits_per_scan", kMaxHitsPerScan);
   add("max_clusters_per_scan", kMaxClustersPerScan);
   add("max_detections_per_node", kMaxDetectionsPerNode);

@@ -30,14 +30,17 @@ void bind_time_zero(py::module_& m) {
       .def("reset", &TimeZeroFinder::reset)
       .def(
           "process",
-          [](TimeZeroFinder& self, const FloatArray& response) {
+          [](TimeZeroFinder& self, const FloatArray& response, std::size_t kept_samples) {
             const Span<const float> input = as_span(response, "response");
-            FloatArray rotated(response.size());
+            const std::size_t size = kept_samples == 0 ? input.size() : kept_samples;
+            FloatArray rotated(static_cast<py::ssize_t>(size));
             TimeZeroResult result;
-            const Status status = self.process(input, {rotated.mutable_data(), input.size()}, result);
+            const Status status = self.process(input, {rotated.mutable_data(), size}, result);
             return py::make_tuple(status, result, status == Status::kOk ? rotated : FloatArray(0));
           },
-          py::arg("response").noconvert(), "(status, result, rotated): response (n_samples,) [count].");
+          py::arg("response").noconvert(), py::arg("kept_samples") = 0,
+          "(status, result, rotated): response (n_samples,) [count]; rotated its first kept_samples, 0: "
+          "all.");
 }
 
 void bind_weak_signal(py::module_& m) {

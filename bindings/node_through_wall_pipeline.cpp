@@ -28,6 +28,8 @@ void bind_node_through_wall_pipeline(py::module_& m) {
   ConfigBinder<Config>(m, "ThroughWallNodeConfig", "A receiver of the pipeline through_wall_2d.")
       .field("node_id", &Config::node_id, ">= 0")
       .field("n_samples", &Config::n_samples, "[sample] of a response")
+      .field("kept_samples", &Config::kept_samples,
+             "[sample] of it once turned, past blind_zone_s and noise_samples, at most 1920; 0: all")
       .field("sample_rate_hz", &Config::sample_rate_hz, "[Hz] the sequence's clock")
       .field("baseline_m", &Config::baseline_m, "[m] transmitter to receiver")
       .field("delay_offset_s", &Config::delay_offset_s, "[s] calibration, added to every delay")

@@ -26,11 +26,6 @@ constexpr link::RegisterField kEmptyRoomRegisters[] = {
     ECHOFUSE_REGISTER_AS(Commands, empty_room_scans_left, "echofuse.empty_room_scans_left"),
 };
 
-/// The longest frame that a node reads is a raw scan, if its radar is on the link; their samples share the memory that a
-/// front-end fills otherwise.
-constexpr std::size_t kFrameBytes =
-    link::kFrameHeaderBytes + link::kFrameCrcBytes + 9 + 4 * kMaxSamplesPerScan;
-
 template <class Pipeline>
 class NodeFirmware {
  public:
@@ -105,8 +100,13 @@ class NodeFirmware {
                               link::encode(report_, machine_.endpoint.payload_buffer()));
   }
 
+  /// The longest frame that a node reads is a raw scan, if its radar is on the link; their samples share the memory that a
+  /// front-end fills otherwise.
+  static constexpr std::size_t kFrameBytes =
+      link::kFrameHeaderBytes + link::kFrameCrcBytes + 9 + 4 * Pipeline::kScanSamples;
+
   std::array<std::uint8_t, kFrameBytes> frame_{};
-  std::array<float, kMaxSamplesPerScan> scan_{};
+  std::array<float, Pipeline::kScanSamples> scan_{};
   Machine machine_{frame_, Pipeline::kName};
   typename Pipeline::Config staged_;
   typename Pipeline::Node node_;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
+#include "echofuse/core/limits.hpp"
 #include "echofuse/core/span.hpp"
 #include "echofuse/link/messages.hpp"
 #include "echofuse/link/register_server.hpp"
@@ -18,6 +20,7 @@ struct SensorRadar {
   using Config = node::SensorRadarNodeConfig;
   static constexpr link::MachineKind kKind = link::MachineKind::kSensorRadarNode;
   static constexpr const char* kName = "echofuse.sensor_radar.node";
+  static constexpr std::size_t kScanSamples = kMaxSamplesPerScan;  ///< that the radar gives at once
   static constexpr bool kTakesEmptyRoom = true;
 
   static Span<const link::RegisterField> registers() { return node::config_registers(); }
@@ -42,6 +45,7 @@ struct ThroughWall {
   using Config = node::ThroughWallNodeConfig;
   static constexpr link::MachineKind kKind = link::MachineKind::kThroughWallNode;
   static constexpr const char* kName = "echofuse.through_wall.node";
+  static constexpr std::size_t kScanSamples = kMaxResponseSamples;
   static constexpr bool kTakesEmptyRoom = false;
 
   static Span<const link::RegisterField> registers() { return node::through_wall_registers(); }

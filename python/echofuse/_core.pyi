@@ -1564,10 +1564,12 @@ class TimeZeroFinder:
         expected_samples: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Status: ...
     def process(
-        self, response: numpy.typing.NDArray[numpy.float32]
+        self,
+        response: numpy.typing.NDArray[numpy.float32],
+        kept_samples: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> tuple[Status, TimeZeroResult, numpy.typing.NDArray[numpy.float32]]:
         """
-        (status, result, rotated): response (n_samples,) [count].
+        (status, result, rotated): response (n_samples,) [count]; rotated its first kept_samples, 0: all.
         """
     def reset(self) -> None: ...
 
@@ -1891,6 +1893,7 @@ class ThroughWallNodeConfig:
         *,
         node_id: int = 0,
         n_samples: int = 511,
+        kept_samples: int = 0,
         sample_rate_hz: float = 4500000000.0,
         baseline_m: float = 0.4,
         delay_offset_s: float = 0.0,
@@ -1939,6 +1942,13 @@ class ThroughWallNodeConfig:
         """
     @full_scale_count.setter
     def full_scale_count(self, value: float) -> None: ...
+    @property
+    def kept_samples(self) -> int:
+        """
+        [sample] of it once turned, past blind_zone_s and noise_samples, at most 1920; 0: all
+        """
+    @kept_samples.setter
+    def kept_samples(self, value: int) -> None: ...
     @property
     def max_delay_s(self) -> float:
         """
@@ -4877,6 +4887,7 @@ def write_frame(
 
 LIMITS: dict = {
     "max_samples_per_scan": 1920,
+    "max_response_samples": 4095,
     "max_hits_per_scan": 1920,
     "max_clusters_per_scan": 64,
     "max_detections_per_node": 16,
@@ -4924,4 +4935,4 @@ TAPS: dict = {
     42: ("tracks", 9),
 }
 THROUGH_WALL_HUB_BYTES: int = 25024
-THROUGH_WALL_NODE_BYTES: int = 49200
+THROUGH_WALL_NODE_BYTES: int = 57920

@@ -42,6 +42,11 @@ def node_config(site: Site, place: SiteNode, source: NodeRecording) -> Any:
     """Return a node's configuration: what its recording says, then [pipeline], then its own table.
 
     It is of the class that the site's pipeline names: `_core.SensorRadarNodeConfig` or another.
+
+    Raises
+    ------
+    InputError
+        One line that names the first field that is impossible with such scans.
     """
     config = PIPELINES[site.pipeline].node_config()
     config.node_id = source.node_id
@@ -52,6 +57,10 @@ def node_config(site: Site, place: SiteNode, source: NodeRecording) -> Any:
     config.baseline_m = math.dist(place.tx_position_m, place.rx_position_m)
     apply_settings(config, site.settings)
     apply_settings(config, place.settings())
+    if config.invalid_field() is not None:
+        key = f"node {source.name}: {config.invalid_field()}"
+        allowed = f"what scans of {source.scans.shape[1]} samples at {source.sample_rate_hz:g} Hz allow"
+        raise InputError(problem(site.name, key, allowed))
     return config
 
 
@@ -281,14 +290,7 @@ def configured_node(site: Site, config: Any, source: NodeRecording) -> Any:
     """Return a node that knows the empty room if its recording does."""
     node = PIPELINES[site.pipeline].new_node()
     if node.configure(config) != _core.Status.ok:
-        key = config.invalid_field()
-        raise InputError(
-            problem(
-                site.name,
-                f"node {source.name}: {key}",
-                f"what scans of {source.scans.shape[1]} samples at {source.sample_rate_hz:g} Hz allow",
-            )
-        )
+        raise ValueError(f"{config.invalid_field()}: impossible, which node_config tells")
     if source.reference is not None and hasattr(node, "set_empty_room"):
         for scan in source.reference:
             if node.set_empty_room(np.ascontiguousarray(scan, np.float32)) != _core.Status.ok:

@@ -39,12 +39,12 @@ class NodeStack:
 class ResponseStack:
     """One through-wall receiver's responses after its stages, a row a response (the paper's Figs. 5, 6)."""
 
-    #: (n_responses, n_samples) each, by tap: rotated and subtracted [count], enhanced [1]; zero if not judged
+    #: (n_responses, n_kept) each, by tap: rotated and subtracted [count], enhanced [1]; zero if not judged
     images: dict[str, NDArray[np.float32]]
-    decisions: NDArray[np.uint8]  # (n_responses, n_samples) detector output
+    decisions: NDArray[np.uint8]  # (n_responses, n_kept) detector output
     #: per response (n, 2), by tap: delay [s] and weight of target_traces, leading_edges and detections
     delays: dict[str, list[NDArray[np.float64]]]
-    delay_s: NDArray[np.float64]  # (n_samples,) propagation delay of each sample once rotated [s]
+    delay_s: NDArray[np.float64]  # (n_kept,) propagation delay of each sample once rotated [s]
 
 
 @dataclass(kw_only=True)

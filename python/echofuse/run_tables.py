@@ -133,7 +133,9 @@ class RunTables:
 
     def _responses(self, node: int) -> ResponseStack:
         source = self._recording.nodes[node]
-        taps, n_samples = self._taps[node], source.scans.shape[1]
+        taps = self._taps[node]
+        turned = (len(tap["rotated"]) for tap in taps if "rotated" in tap)
+        n_samples = next(turned, source.scans.shape[1])  # of a turned response that are kept
         nothing, none = np.zeros(n_samples, np.float32), np.zeros((0, 2))
         rate_hz = source.sample_rate_hz
         to_delay = dict.fromkeys(TRACES, np.array([1.0 / rate_hz, 1.0])) | {"detections": np.ones(2)}

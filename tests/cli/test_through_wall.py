@@ -11,8 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 from echofuse.cli import main
+from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.evaluation.behind_wall import path_behind_wall_m
 from echofuse.recording import Recording, read, write
+from echofuse.simulation.stairs import WALL as STAIRS_WALL
+from echofuse.simulation.stairs import simulate_stairs, stairs_scene
 from echofuse.simulation.through_wall import simulate_through_wall
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 from echofuse.simulation.wall import Wall
@@ -216,6 +219,46 @@ def test_a_single_receiver_still_gives_its_traces(
     assert "responses-01-rx1.png" in {path.name for path in (tmp_path / "run" / "figures").iterdir()}
     assert main(["verify", str(tmp_path / "run" / "recording.h5")]) == 0
     assert f"{responses} frames, all bytes the same" in capsys.readouterr().out
+
+
+@pytest.fixture(scope="module")
+def on_the_stairs() -> Recording:
+    """The first receiver's 4095 samples of somebody who climbs."""
+    whole = simulate_stairs(stairs_scene(), seed=1, duration_s=6.0)
+    return replace(whole, pipeline="through_wall_2d", nodes=whole.nodes[:1])
+
+
+STAIRWELL = (
+    "[site]\nname = 'stairs'\narea = [-1.4, 0.3, 1.4, 6.3]\n[[node]]\nname = 'rx1'\nid = 1\n"
+    "tx_position_m = [0, 0, 0]\nrx_position_m = [-0.39, 0, 0]\n"
+    "[pipeline]\nname = 'through_wall_2d'\n"
+)
+
+
+def test_of_a_long_sequence_only_the_beginning_is_kept(on_the_stairs: Recording, tmp_path: Path) -> None:
+    write(tmp_path / "one.h5", replace(on_the_stairs, site_toml=STAIRWELL + "kept_samples = 700\n"))
+    assert main(["process", str(tmp_path / "one.h5"), "--out", str(tmp_path / "run")]) == 0
+    rows = rows_of(tmp_path / "run" / "observations.csv")
+    times = np.array([float(row["time_s"]) for row in rows])
+    ranges = np.array([float(row["range_m"]) for row in rows])
+    person, rx1 = on_the_stairs.truth[0], on_the_stairs.nodes[0]
+    path_m = path_behind_wall_m(person.position_m, rx1.tx_position_m, rx1.rx_position_m, STAIRS_WALL)
+    near = np.abs(ranges - np.interp(times, person.time_s, path_m)) < 0.6
+    assert len(np.unique(times[near])) > 0.85 * (len(person.time_s) - SETTLED)
+    assert np.max(ranges) < 700 / 7e9 * SPEED_OF_LIGHT_MPS
+    assert {path.name for path in (tmp_path / "run" / "figures").iterdir()} >= {"responses-01-rx1.png"}
+    assert main(["verify", str(tmp_path / "run" / "recording.h5")]) == 0
+
+
+@pytest.mark.parametrize(("kept", "key"), [("", "node rx1: "), ("kept_samples = 2000\n", "pipeline.")])
+def test_a_long_sequence_of_which_too_much_is_kept_is_one_line(
+    on_the_stairs: Recording, tmp_path: Path, capsys: pytest.CaptureFixture[str], kept: str, key: str
+) -> None:
+    write(tmp_path / "one.h5", replace(on_the_stairs, site_toml=STAIRWELL + kept))
+    assert main(["process", str(tmp_path / "one.h5"), "--no-report", "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f": {key}kept_samples: expected " in said
 
 
 def test_a_dead_second_receiver_is_told_and_gives_no_position(

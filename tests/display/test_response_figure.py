@@ -20,7 +20,7 @@ from echofuse.simulation.wall import Wall
 from echofuse.site import example_site
 
 RATE_HZ = 4.5e9
-N_SAMPLES, N_RESPONSES = 511, 40
+N_SAMPLES, N_KEPT, N_RESPONSES = 511, 300, 40
 PERIOD_S = 0.074
 C = SPEED_OF_LIGHT_MPS
 COLOURS = {0: style.QUIET, 7: style.track_colour(7)}
@@ -40,7 +40,7 @@ def walled() -> RunResult:
         paths.append(path_m)
         scans = rng.normal(0.0, 8.0, (N_RESPONSES, N_SAMPLES)).astype(np.float32)
         echo = np.round(path_m / C * RATE_HZ).astype(int)
-        images = {name: np.zeros_like(scans) for name in ("rotated", "subtracted", "enhanced")}
+        images = {name: np.zeros_like(scans[:, :N_KEPT]) for name in ("rotated", "subtracted", "enhanced")}
         for image in images.values():
             image[np.arange(N_RESPONSES), echo] = -0.5  # signed: what is drawn is its magnitude
         decisions = (images["enhanced"] < 0).astype(np.uint8)
@@ -49,7 +49,7 @@ def walled() -> RunResult:
             images=images,
             decisions=decisions,
             delays={"target_traces": rows, "leading_edges": rows, "detections": rows},
-            delay_s=np.arange(N_SAMPLES) / RATE_HZ,
+            delay_s=np.arange(N_KEPT) / RATE_HZ,
         )
         nodes.append(
             NodeRecording(
@@ -99,6 +99,9 @@ def test_every_stage_has_its_panel(walled: RunResult) -> None:
     assert [title[:3] for title in titles] == [f"({letter})" for letter in "abcdefgh"]
     assert [len(axes.images) for axes in panels] == [1, 1, 1, 1, 1, 0, 0, 0]
     assert panels[0].get_xlim()[1] == pytest.approx((N_SAMPLES - 1) / RATE_HZ * 1e9)
+    for axes, n_samples in zip(panels[:5], (N_SAMPLES, *[N_KEPT] * 4), strict=True):
+        assert axes.images[0].get_array().shape[1] == n_samples
+        assert axes.images[0].get_extent()[1] == pytest.approx((n_samples - 1) / RATE_HZ * 1e9)
     enhanced = panels[3].images[0].get_array()
     assert enhanced.max() == pytest.approx(0.5)
     assert np.count_nonzero(panels[4].images[0].get_array()) == N_RESPONSES

@@ -1,5 +1,6 @@
 """What the measured images are fed: the case studies, and the worst that `limits.hpp` lets in."""
 
+import math
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +16,7 @@ from echofuse.pipeline import SensorRadar, hub_config, node_config, scans_in_tim
 from echofuse.recording import NodeRecording, Recording
 from echofuse.simulation.scene import sensor_radar_scene
 from echofuse.simulation.sensor_radar import case_study_people, simulate
+from echofuse.simulation.stairs import simulate_stairs, stairs_scene
 from echofuse.simulation.through_wall import simulate_through_wall
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 from echofuse.site import Site, example_site
@@ -23,6 +25,7 @@ SITE, BEFORE_A_WALL = example_site("sensor_radar"), example_site("through_wall")
 PERIOD_US = 100_000
 RESPONSE_PERIOD_US = 74_000
 THROUGH_WALL_S = 9.0  # in which both people walk, meet and turn
+STAIRS_S = 4.5  # from the lower floor to the middle of the first flight
 
 
 @dataclass
@@ -57,6 +60,12 @@ def through_wall_case_study() -> Recording:
     )
 
 
+@cache
+def stairs() -> Recording:
+    """One person on the stairs."""
+    return simulate_stairs(stairs_scene(), seed=0, duration_s=STAIRS_S)
+
+
 def sensor_radar_node() -> NodeFeed:
     """Return the case study's first node."""
     return _first_node(SITE, case_study(), PERIOD_US)
@@ -70,6 +79,19 @@ def sensor_radar_hub() -> HubFeed:
 def through_wall_node() -> NodeFeed:
     """Return the case study's first receiver."""
     return _first_node(BEFORE_A_WALL, through_wall_case_study(), RESPONSE_PERIOD_US)
+
+
+def stairs_node(kept_samples: int) -> NodeFeed:
+    """Return the stairs' first receiver, which keeps so many of 4095 samples, from power-up to mid-flight."""
+    source = stairs().nodes[0]
+    config = _core.ThroughWallNodeConfig(
+        node_id=source.node_id,
+        n_samples=source.scans.shape[1],
+        kept_samples=kept_samples,
+        sample_rate_hz=source.sample_rate_hz,
+        baseline_m=math.dist(source.tx_position_m, source.rx_position_m),
+    )
+    return NodeFeed(config, source, RESPONSE_PERIOD_US)
 
 
 def through_wall_hub() -> HubFeed:

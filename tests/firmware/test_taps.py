@@ -32,7 +32,7 @@ def assert_same_bits(here: Taps, there: Taps, where: str) -> None:
 
 @pytest.mark.parametrize("choice", THROUGH_WALL_NODE_CHOICES, ids=lambda choice: choice.name)
 def test_a_through_wall_node(image: FirmwareConformanceTarget, choice: Choice) -> None:
-    for heard in simulated_responses(len(KINDS)):
+    for heard in simulated_responses(len(KINDS), long_sequence=choice.long_sequence):
         config = heard.config(choice)
         with (
             closing(InProcessTarget().through_wall_node(config)) as node,

@@ -1,6 +1,7 @@
 """Through-wall receivers and their hub on their images: what this process says, byte for byte."""
 
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,6 +11,11 @@ from ledger import OF_TROUBLE, Ledger
 from test_ports import PLACES
 
 from echofuse import _core
+from echofuse.conformance.choices import THROUGH_WALL_NODE_CHOICES
+from echofuse.conformance.comparison import Scoreboard
+from echofuse.conformance.firmware_target import FirmwareConformanceTarget
+from echofuse.conformance.through_wall_inputs import simulated_responses
+from echofuse.conformance.through_wall_taps import THROUGH_WALL_NODE_TAPS, conform_through_wall_node
 from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID
 from echofuse.emulation.firmware import Machine as Board
@@ -152,6 +158,19 @@ def test_a_receiver_of_ones_own_says_the_same_bytes(
         there = run(receivers, on_boards(opener))
     assert_same(here, there)
     assert opener.rejected == {place.address: {}}
+
+
+@pytest.mark.parametrize("kind", sorted(PLACES))
+def test_a_receiver_of_ones_own_takes_4095_samples(kind: str) -> None:
+    board = Scoreboard()
+    (choice,) = (choice for choice in THROUGH_WALL_NODE_CHOICES if choice.long_sequence)
+    heard = list(simulated_responses(1, long_sequence=True))
+    with (
+        PLACES[kind]("through_wall_node") as place,
+        closing(FirmwareConformanceTarget(place.address)) as target,
+    ):
+        conform_through_wall_node(board, choice, target, heard)
+    assert [row.tap for row in board.rows() if row.passed] == list(THROUGH_WALL_NODE_TAPS)
 
 
 def test_a_node_of_another_pipeline_is_no_receiver() -> None:

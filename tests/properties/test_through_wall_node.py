@@ -297,7 +297,8 @@ def test_taps_do_not_change_the_report_and_float64_is_refused() -> None:
 @pytest.mark.parametrize(
     ("field", "value"),
     [
-        ("node_id", -1), ("n_samples", 2), ("n_samples", 1921), ("sample_rate_hz", float("nan")),
+        ("node_id", -1), ("n_samples", 2), ("n_samples", 4096), ("sample_rate_hz", float("nan")),
+        ("kept_samples", -1), ("kept_samples", 1921), ("kept_samples", 82),
         ("baseline_m", -1.0), ("baseline_m", 34.1), ("delay_offset_s", 5.0), ("blind_zone_s", -1e-9),
         ("max_delay_s", float("nan")), ("max_delay_s", 4e-9), ("full_scale_count", -1.0),
         ("saturated_samples", -1),
@@ -328,6 +329,47 @@ def test_an_impossible_stage_is_named(key: str, value: Any, named: str) -> None:
     setattr(getattr(config, stage), field, value)
     assert config.invalid_field() == named
     assert _core.ThroughWallNode().configure(config) == _core.Status.invalid_config
+
+
+def test_what_is_kept_fits_the_stages_and_holds_noise_behind_the_blind_zone() -> None:
+    config = config_of(n_samples=4095)
+    assert config.invalid_field() == "kept_samples"
+    config.kept_samples = 83  # 18.2 samples to the end of the blind zone, and 64 of noise
+    assert config.invalid_field() is None
+    config.blind_zone_s = 3e-9
+    assert config.invalid_field() == "kept_samples"
+    config.weak_signal.noise_samples = 60
+    assert config.invalid_field() is None
+    config.n_samples, config.kept_samples = 64, 1000  # more than there are: all
+    assert config.invalid_field() is None
+    config.n_samples, config.kept_samples = 4095, 1920
+    config.clutter.method = _core.ClutterMethod.frame_difference
+    config.clutter.difference_lag_scans = 4
+    assert config.invalid_field() == "clutter.difference_lag_scans"
+    config.kept_samples = 511
+    assert config.invalid_field() is None
+
+
+@pytest.mark.parametrize("n_samples", [511, 4095])
+def test_what_is_kept_of_a_response_is_judged_as_a_response_that_is_no_longer(n_samples: int) -> None:
+    """Wherever it begins, and whatever moves behind that."""
+    kept, starts = 400, (0, 123, n_samples - 200, n_samples - 5)
+    for start in starts:
+        rng = np.random.default_rng(15)
+        cut, short = node_of(n_samples=n_samples, kept_samples=kept), node_of(n_samples=kept)
+        for t in range(SETTLED + 20):
+            people = [100.0 + t, 250.0] if t > SETTLED else []
+            whole = response(rng, people, start=0, n_samples=n_samples)
+            whole[kept:] += 30.0 * pulse(20.0 + t, n_samples - kept).astype(np.float32)  # out of sight
+            status, got, taps = cut.process_with_taps(np.roll(whole, start), t)
+            expected_status, expected, expected_taps = short.process_with_taps(whole[:kept].copy(), t)
+            assert (status, expected_status) == (OK, OK)
+            np.testing.assert_array_equal(got, expected)
+            assert len(taps["scan"]) == n_samples
+            for name, values in expected_taps.items():
+                if name not in ("scan", "time_zero"):
+                    np.testing.assert_array_equal(taps[name], values)
+            assert len(got) == 2 or t <= SETTLED + 3
 
 
 def test_a_frame_difference_further_back_than_the_memory_is_named() -> None:

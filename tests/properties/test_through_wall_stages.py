@@ -111,6 +111,8 @@ def test_inputs_of_the_wrong_length_are_refused() -> None:
     assert finder.configure(_core.TimeZeroConfig(), 511, 600.0) == _core.Status.invalid_config
     assert finder.configure(_core.TimeZeroConfig(), 511, 6.0) == OK
     assert finder.process(short)[0] == INVALID
+    assert finder.process(np.zeros(511, np.float32), kept_samples=512)[0] == INVALID
+    assert finder.configure(_core.TimeZeroConfig(), 4096, 6.0) == _core.Status.invalid_config
     assert enhancer.configure(_core.WeakSignalConfig(noise_samples=20), 10) == _core.Status.invalid_config
     assert enhancer.configure(_core.WeakSignalConfig(), 511) == OK
     assert enhancer.process(short)[0] == INVALID

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from echofuse.errors import InputError
-from echofuse.pipeline import hub_config, node_config, nominal_source
+from echofuse.pipeline import configured_node, hub_config, node_config, nominal_source
 from echofuse.simulation.through_wall_scene import through_wall_scene
 from echofuse.simulation.through_wall_site import site_scene_behind_wall, site_walkers_behind_wall
 from echofuse.site import Site, example_site, parse_site
@@ -147,6 +147,41 @@ def test_a_wrong_site_is_named(name: str) -> None:
     (line,) = problems(text)
     assert line.startswith(f"wall.toml: {key}: expected ")
     assert words in line
+
+
+def kept(value: str) -> str:
+    return edited('name = "through_wall_2d"', f'name = "through_wall_2d"\nkept_samples = {value}')
+
+
+@pytest.mark.parametrize("value", ["-1", "40", "1921", "4095"])
+def test_to_keep_too_few_or_too_many_samples_is_named(value: str) -> None:
+    (line,) = problems(kept(value))
+    assert line.startswith("wall.toml: pipeline.kept_samples: expected a possible value (")
+    assert line.endswith(f"at most 1920; 0: all), found {value}")
+
+
+def test_a_site_that_keeps_too_little_of_a_long_sequence_is_named() -> None:
+    for settings, rate_hz, key in (
+        (TEXT, 7e9, "kept_samples"),
+        (kept("90"), 7e9, "kept_samples"),  # 28 samples to the end of the blind zone, and 64 of noise
+        (kept("90"), 4.5e9, None),
+        (kept("700"), 7e9, None),
+    ):
+        site = parse_site(settings, "wall.toml")
+        source = replace(
+            nominal_source(site, site.nodes[0]),
+            sample_rate_hz=rate_hz,
+            scans=np.zeros((0, 4095), np.float32),
+        )
+        if key is None:
+            configured_node(site, node_config(site, site.nodes[0], source), source)
+            continue
+        with pytest.raises(InputError) as caught:
+            node_config(site, site.nodes[0], source)
+        (line,) = caught.value.problems
+        assert line == (
+            f"{site.name}: node rx1: {key}: expected what scans of 4095 samples at {rate_hz:g} Hz allow"
+        )
 
 
 def test_a_longer_blind_zone_lets_a_thick_wall_pass() -> None:

@@ -18,6 +18,7 @@ class Choice:
     settings: Settings = field(default_factory=dict)
     learns: bool = False  # nobody gives the background: the node learns it
     shared_transmitter: bool = False  # hub: possible only where all nodes share one
+    long_sequence: bool = False  # through-wall node: on the stairs' responses of 4095 samples
 
     def selects(self, number: int, frame: int) -> bool:
         """Whether the selection, by far the slowest of the reference, is compared in a frame of an input.
@@ -114,6 +115,8 @@ NODE_CHOICES: tuple[Choice, ...] = (
 
 THROUGH_WALL_NODE_CHOICES: tuple[Choice, ...] = (
     Choice(name="default"),
+    *_one("kept_samples", 200),
+    Choice(name="kept_samples=700 of 4095", settings={"kept_samples": 700}, long_sequence=True),
     *_one("max_delay_s", 3.3e-8),
     *_one("time_zero.learning_responses", 4),
     *_one("time_zero.moved_responses", 1),

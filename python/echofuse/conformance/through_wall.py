@@ -30,9 +30,13 @@ def steps(target: ConformanceTarget, plan: ThroughWallPlan, scores: Scores) -> I
     """Compare in `plan.steps()` steps; what is found goes into `scores`."""
     # An image or a board that is missing is told before a minute of simulation.
     target.through_wall_node(_core.ThroughWallNodeConfig()).close()
-    inputs = list(simulated_responses(plan.seeds))
+    inputs = {
+        long: list(simulated_responses(plan.seeds, long_sequence=long))
+        for long in {choice.long_sequence for choice in plan.node_choices}
+    }
     for choice in plan.node_choices:
-        conform_through_wall_node(scores.board("through-wall node"), choice, target, inputs)
+        heard = inputs[choice.long_sequence]
+        conform_through_wall_node(scores.board("through-wall node"), choice, target, heard)
         yield
     reports = list(simulated_through_wall_reports(max(plan.seeds, len(LINES_M))))
     for choice in plan.hub_choices:

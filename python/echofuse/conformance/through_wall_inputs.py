@@ -1,4 +1,4 @@
-"""Responses to conform a through-wall node on: people in the simulated case study, and what may go wrong."""
+"""Responses to conform a through-wall node on: people in simulated case studies, and what may go wrong."""
 
 from collections.abc import Iterator
 from copy import deepcopy
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from echofuse import _core
 from echofuse.conformance.choices import Choice, configure
+from echofuse.simulation.stairs import stairs_climber, stairs_scene
 from echofuse.simulation.through_wall import ThroughWallSimulation
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
 
@@ -34,16 +35,18 @@ class ThroughWallInput:
         return config
 
 
-def simulated_responses(seeds: int) -> Iterator[ThroughWallInput]:
-    """One receiver a seed, one to four people; every kind of trouble by turns."""
-    scene = through_wall_scene()
+def simulated_responses(seeds: int, *, long_sequence: bool = False) -> Iterator[ThroughWallInput]:
+    """One receiver a seed, one to four people; every kind of trouble by turns.
+
+    long_sequence: one person on the stairs, 4095 samples, of which a configuration must keep fewer.
+    """
+    scene = stairs_scene() if long_sequence else through_wall_scene()
     for seed in range(seeds):
         kind = KINDS[seed % len(KINDS)]
         first = 17 * seed % 60
         again_s = ((first + AT - 0.5) * scene.scan_period_s,) if kind == "power-up" else ()
-        simulation = ThroughWallSimulation(
-            scene, case_study_walkers(1 + seed % 4), seed=seed, power_up_s=again_s
-        )
+        people = (stairs_climber(),) if long_sequence else case_study_walkers(1 + seed % 4)
+        simulation = ThroughWallSimulation(scene, people, seed=seed, power_up_s=again_s)
         which = seed % len(scene.nodes)
         node, total = scene.nodes[which], AT + RESPONSES if again_s else RESPONSES
         responses = np.stack([simulation.frame(first + k).scans[which] for k in range(total)])

@@ -30,20 +30,16 @@ def response_figure(result: RunResult, name: str) -> Figure:
     start_s = setting.frame_time_s(result)[0] if result.frame_time_us.size else float(node.time_s[0])
     time_s = np.asarray(node.time_s, np.float64)[:n_responses] - start_s
     half_row_s = 0.5 * (float(np.median(np.diff(time_s))) if time_s.size > 1 else 1.0)
-    delay_ns = stack.delay_s * 1e9
-    extent: Extent = (
-        float(delay_ns[0]),
-        float(delay_ns[-1]),
-        float(time_s[0]) - half_row_s,
-        float(time_s[-1]) + half_row_s,
-    )
+    rows_s = (float(time_s[0]) - half_row_s, float(time_s[-1]) + half_row_s)
+    raw: Extent = (0.0, (node.scans.shape[1] - 1) / node.sample_rate_hz * 1e9, *rows_s)
+    extent: Extent = (float(stack.delay_s[0]) * 1e9, float(stack.delay_s[-1]) * 1e9, *rows_s)
     images = stack.images
     truth_ns = _true_delays_ns(result, node)
     with style.look():
         figure, panels = style.new_panels(
             4, 2, 12.0, legend=False, right_in=0.85, share_x=False, share_y=True
         )
-        draw_decibel(figure, panels[0, 0], np.abs(node.scans[:n_responses]), extent)
+        draw_decibel(figure, panels[0, 0], np.abs(node.scans[:n_responses]), raw)
         draw_decibel(figure, panels[0, 1], np.abs(images["rotated"]), extent)
         draw_decibel(figure, panels[1, 0], np.abs(images["subtracted"]), extent)
         draw_share(figure, panels[1, 1], np.abs(images["enhanced"]), extent)
@@ -68,7 +64,7 @@ def response_figure(result: RunResult, name: str) -> Figure:
         shown_ns = min(extent[1], BEYOND_AREA * _farthest_ns(result, node))
         for letter, title, axes in zip("abcdefgh", titles, panels.flat, strict=True):
             axes.set_title(f"({letter}) {title}")
-            axes.set_xlim(extent[0], extent[1] if letter == "a" else shown_ns)
+            axes.set_xlim(extent[0], raw[1] if letter == "a" else shown_ns)
             axes.set_ylim(extent[2], extent[3])
         for axes in panels[3]:
             axes.set_xlabel("delay [ns]")

@@ -115,9 +115,14 @@ def check_settings(settings: Mapping[str, Any], configs: Sequence[Config], probl
 
 
 def apply_settings(config: Config, settings: Mapping[str, Any]) -> None:
-    """Set on `config` those checked settings that it has fields for; the others belong to another class."""
+    """Set on `config` those checked settings that it has fields for; the others belong to another class.
+
+    What is possible by itself, and not with what was measured, stands there: `invalid_field` tells.
+    """
     problems = Problems("pipeline")
-    _set_all(config, {key: value for key, value in settings.items() if key in config.fields()}, "", problems)
+    for key, value in settings.items():
+        if key in config.fields():
+            _set(config, key, value, key, problems)
     if problems.lines:
         raise ValueError("\n".join(problems.lines))
 

@@ -22,30 +22,33 @@ def passed(board: Scoreboard) -> bool:
     return bool(board.rows()) and all(row.passed for row in board.rows())
 
 
-def responses(rng: np.random.Generator, n: int, power_up: int) -> NDArray[np.float32]:
+def responses(
+    rng: np.random.Generator, n: int, power_up: int, n_samples: int = N_SAMPLES
+) -> NDArray[np.float32]:
     """(n, n_samples) cross-talk, a wall and its echoes, noise; turned by another start at power_up."""
-    k = np.arange(N_SAMPLES)
-    plain = np.zeros(N_SAMPLES)
+    k = np.arange(n_samples)
+    plain = np.zeros(n_samples)
     for delay, height in ((6.3, 1000.0), (11.8, -620.0), (17.0, 300.0), (60.0, 40.0), (200.0, 9.0)):
         plain += height * np.sinc(k - delay) * np.exp(-(((k - delay) / 12.0) ** 2))
-    starts = np.where(np.arange(n) < power_up, rng.integers(N_SAMPLES), rng.integers(N_SAMPLES))
-    turned = [np.roll(plain, start) + rng.normal(0.0, 1.0, N_SAMPLES) for start in starts]
+    starts = np.where(np.arange(n) < power_up, rng.integers(n_samples), rng.integers(n_samples))
+    turned = [np.roll(plain, start) + rng.normal(0.0, 1.0, n_samples) for start in starts]
     return np.array(turned, np.float32)
 
 
 @pytest.mark.parametrize("moved_responses", [1, 3])
-def test_time_zero(moved_responses: int) -> None:
+@pytest.mark.parametrize(("n_samples", "kept"), [(N_SAMPLES, 0), (N_SAMPLES, 120), (4095, 700)])
+def test_time_zero(n_samples: int, kept: int, moved_responses: int) -> None:
     config = _core.TimeZeroConfig(moved_responses=moved_responses)
     board, seen = Scoreboard(), {"found": 0, "moved": 0}
     for seed in range(20):
         rng = np.random.default_rng(seed)
         core, reference = _core.TimeZeroFinder(), TimeZero(as_reference(config), EXPECTED_SAMPLES)
-        assert core.configure(config, N_SAMPLES, EXPECTED_SAMPLES) == _core.Status.ok
-        for index, response in enumerate(responses(rng, 40, power_up=22)):
+        assert core.configure(config, n_samples, EXPECTED_SAMPLES) == _core.Status.ok
+        for index, response in enumerate(responses(rng, 40, power_up=22, n_samples=n_samples)):
             if index in (15, 33):
-                response = rng.normal(0.0, 1.0, N_SAMPLES).astype(np.float32)  # without cross-talk
-            status, got, rotated = core.process(response)
-            expected = reference.process(response.astype(np.float64))
+                response = rng.normal(0.0, 1.0, n_samples).astype(np.float32)  # without cross-talk
+            status, got, rotated = core.process(response, kept)
+            expected = reference.process(response.astype(np.float64), kept)
             assert status == _core.Status.ok
             where = f"seed {seed}, response {index}"
             decided = [got.found, got.moved, got.rotation_samples]
@@ -60,6 +63,7 @@ def test_time_zero(moved_responses: int) -> None:
                 "node.time_zero",
             )
             np.testing.assert_array_equal(rotated, expected.response.astype(np.float32))
+            assert len(rotated) == (kept or n_samples)
             seen["found"] += got.found
             seen["moved"] += got.moved
     assert passed(board), board.as_json()

@@ -17,6 +17,8 @@ namespace echofuse {
 // One scan, on a node.
 inline constexpr std::size_t kMaxSamplesPerScan =
     1920;  ///< [sample] the case study's scan: 117 ns at 16.4 GHz
+inline constexpr std::size_t kMaxResponseSamples =
+    4095;  ///< [sample] the Taylor-series paper's M-sequence, of order 12, before it is turned to time zero and cut
 inline constexpr std::size_t kMaxHitsPerScan =
     kMaxSamplesPerScan;  ///< a detector may hit in every sample, never more
 inline constexpr std::size_t kMaxClustersPerScan =

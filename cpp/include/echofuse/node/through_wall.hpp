@@ -22,7 +22,11 @@ namespace echofuse::node {
 
 struct ThroughWallNodeConfig {
   std::int32_t node_id = 0;
-  int n_samples = 511;            ///< [sample] of a response: the sequence's length, 3 to kMaxSamplesPerScan
+  int n_samples = 511;  ///< [sample] of a response: the sequence's length, 3 to kMaxResponseSamples
+  /// [sample] of a turned response, from its beginning: all that the stages behind time zero see, so that a long sequence
+  /// costs them nothing where a room is short. Their last weak_signal.noise_samples, behind the blind zone, hold noise
+  /// alone. 0, or more than n_samples: all. In all cases at most kMaxSamplesPerScan are left.
+  int kept_samples = 0;
   float sample_rate_hz = 4.5e9f;  ///< [Hz] the sequence's clock
   float baseline_m = 0.4f;        ///< [m] transmitter to receiver: the way of the cross-talk
   float delay_offset_s = 0.0f;    ///< [s] calibration, added to every delay
@@ -84,7 +88,7 @@ class ThroughWallNode {
   const ThroughWallNodeCounters& counters() const { return counters_; }
 
  private:
-  using Response = std::array<float, kMaxSamplesPerScan>;
+  using Kept = std::array<float, kMaxSamplesPerScan>;
 
   bool usable(Span<const float> response) const;
   bool trusted(Span<const float> response);
@@ -96,7 +100,7 @@ class ThroughWallNode {
   void tap_time_zero(const TimeZeroResult& time_zero) const;
   void tap_decisions();
   void tap_traces(TapId tap) const;
-  Span<float> cut(Response& samples) { return {samples.data(), static_cast<std::size_t>(config_.n_samples)}; }
+  Span<float> cut(Kept& samples) { return {samples.data(), n_kept_}; }
 
   bool configured_ = false;
   bool report_ready_ = false;
@@ -112,15 +116,16 @@ class ThroughWallNode {
   TargetTracer target_traces_;
   LeadingEdge leading_edge_;
 
-  int n_learning_ = 0;  ///< responses since time zero was last void, no further than it is learnt
+  std::size_t n_kept_ = 0;  ///< [sample] of a turned response
+  int n_learning_ = 0;      ///< responses since time zero was last void, no further than it is learnt
   std::uint32_t frame_ = 0;
 
-  Response work_{};       ///< the response, turned, then subtracted, then enhanced
-  Response amplitude_{};  ///< envelope of what is subtracted
+  Kept work_{};       ///< the response, turned, then subtracted, then enhanced
+  Kept amplitude_{};  ///< envelope of what is subtracted
   std::array<std::uint8_t, kMaxSamplesPerScan> decisions_{};
   BoundedVector<TargetTrace, kMaxClustersPerScan> traces_;
 };
 
-static_assert(sizeof(ThroughWallNode) <= 52 * 1024, "a node's RAM budget");
+static_assert(sizeof(ThroughWallNode) <= 60 * 1024, "a node's RAM budget");
 
 }  // namespace echofuse::node

@@ -61,6 +61,7 @@ constexpr link::RegisterField kSensorRadarFields[] = {
 
 constexpr link::RegisterField kThroughWallFields[] = {
     FIELD(n_samples),
+    FIELD(kept_samples),
     FIELD(sample_rate_hz),
     FIELD(baseline_m),
     FIELD(delay_offset_s),

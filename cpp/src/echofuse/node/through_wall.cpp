@@ -20,6 +20,11 @@ float cross_talk_delay_s(const ThroughWallNodeConfig& config) {
   return config.baseline_m / kSpeedOfLight_mps;
 }
 
+/// [sample] of a turned response that the stages behind time zero see
+int kept_samples(const ThroughWallNodeConfig& config) {
+  return config.kept_samples > 0 ? std::min(config.kept_samples, config.n_samples) : config.n_samples;
+}
+
 /// The stage's first configuration that cannot be, by name.
 const char* invalid_stage(const ThroughWallNodeConfig& config) {
   if (invalid_field(config.time_zero) != nullptr) return "time_zero";
@@ -36,16 +41,20 @@ const char* invalid_stage(const ThroughWallNodeConfig& config) {
 const char* invalid_together(const ThroughWallNodeConfig& config) {
   if (!(cross_talk_delay_s(config) * config.sample_rate_hz < static_cast<float>(config.n_samples)))
     return "baseline_m";
-  if (config.max_delay_s != 0.0f && !(config.max_delay_s > cross_talk_delay_s(config) + config.blind_zone_s))
-    return "max_delay_s";
+  const float first_s = cross_talk_delay_s(config) + config.blind_zone_s;
+  if (config.max_delay_s != 0.0f && !(config.max_delay_s > first_s)) return "max_delay_s";
+  const int kept = kept_samples(config);
+  if (kept > static_cast<int>(kMaxSamplesPerScan)) return "kept_samples";
   if (uses_envelope(config.clutter.method)) return "clutter.method";  // the phase would be lost too early
   const auto memory = static_cast<int>(kMaxClutterMemory);
   if (config.clutter.method == ClutterMethod::kFrameDifference &&
-      config.clutter.difference_lag_scans > memory / config.n_samples)
+      config.clutter.difference_lag_scans > memory / kept)
     return "clutter.difference_lag_scans";
   if (!(config.envelope.low_pass_cutoff_hz < 0.5f * config.sample_rate_hz))
     return "envelope.low_pass_cutoff_hz";
   if (config.weak_signal.noise_samples > config.n_samples) return "weak_signal.noise_samples";
+  const auto judged = static_cast<float>(kept - config.weak_signal.noise_samples);
+  if (kept < config.n_samples && !(first_s * config.sample_rate_hz < judged)) return "kept_samples";
   return nullptr;
 }
 
@@ -69,7 +78,9 @@ void sort_and_merge(BoundedVector<TargetTrace>& traces) {
 
 const char* invalid_field(const ThroughWallNodeConfig& config) {
   if (config.node_id < 0) return "node_id";
-  if (config.n_samples < 3 || config.n_samples > static_cast<int>(kMaxSamplesPerScan)) return "n_samples";
+  if (config.n_samples < 3 || config.n_samples > static_cast<int>(kMaxResponseSamples)) return "n_samples";
+  if (config.kept_samples < 0 || config.kept_samples > static_cast<int>(kMaxSamplesPerScan))
+    return "kept_samples";
   if (!within(config.sample_rate_hz, 1.0f, 1e12f)) return "sample_rate_hz";
   if (!within(config.baseline_m, 0.0f, 1e6f)) return "baseline_m";
   if (!within(config.delay_offset_s, -kMaxDelay_s, kMaxDelay_s)) return "delay_offset_s";
@@ -84,16 +95,18 @@ const char* invalid_field(const ThroughWallNodeConfig& config) {
 Status ThroughWallNode::configure(const ThroughWallNodeConfig& config) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
   const float expected_samples = cross_talk_delay_s(config) * config.sample_rate_hz;
+  const int kept = kept_samples(config);
   const Status results[] = {time_zero_.configure(config.time_zero, config.n_samples, expected_samples),
-                            clutter_.configure(config.clutter, config.n_samples),
+                            clutter_.configure(config.clutter, kept),
                             envelope_.configure(config.envelope, config.sample_rate_hz),
-                            weak_signal_.configure(config.weak_signal, config.n_samples),
+                            weak_signal_.configure(config.weak_signal, kept),
                             gaussian_cfar_.configure(config.gaussian_cfar),
                             target_traces_.configure(config.target_traces),
                             leading_edge_.configure(config.leading_edge)};
   for (const Status result : results)
     ECHOFUSE_CHECK(result == Status::kOk);  // invalid_field has seen them all
   config_ = config;
+  n_kept_ = static_cast<std::size_t>(kept);
   configured_ = true;
   counters_ = ThroughWallNodeCounters{};
   frame_ = 0;
@@ -125,7 +138,7 @@ Status ThroughWallNode::process(Span<const float> response, std::int64_t time_us
   ++counters_.responses;
   taps_(TapId::kScan, response);
 
-  // 1. Turned to time zero; all 0 where that is not known, and from there on.
+  // 1. Turned to time zero, and cut; all 0 where that is not known, and from there on.
   const TimeZeroResult time_zero = find_time_zero(response);
   tap_time_zero(time_zero);
   taps_(TapId::kRotated, cut(work_));
@@ -140,7 +153,7 @@ Status ThroughWallNode::process(Span<const float> response, std::int64_t time_us
   detect(judges);
 
   // 4. Traces of people in the decisions, each moved to its echo's leading edge.
-  const Span<const std::uint8_t> decisions{decisions_.data(), response.size()};
+  const Span<const std::uint8_t> decisions{decisions_.data(), n_kept_};
   const Status found = target_traces_.process(decisions, traces_);
   tap_traces(TapId::kTargetTraces);
   (void)leading_edge_.process(cut(amplitude_), traces_);
@@ -155,24 +168,20 @@ Status ThroughWallNode::process(Span<const float> response, std::int64_t time_us
 
 /// False, and counted, for what a dead or saturated receiver gives.
 bool ThroughWallNode::trusted(Span<const float> response) {
-  bool alive = false;
-  int at_full_scale = 0;
-  for (const float value : response) {
-    if (value != response[0]) alive = true;
-    if (std::abs(value) >= config_.full_scale_count) ++at_full_scale;
-  }
-  if (!alive) {
+  if (std::all_of(response.begin(), response.end(), [&](float value) { return value == response[0]; })) {
     ++counters_.dead_responses;
     return false;
   }
-  if (config_.full_scale_count > 0.0f && at_full_scale > config_.saturated_samples) {
+  const auto at_full_scale = [&](float value) { return std::abs(value) >= config_.full_scale_count; };
+  if (config_.full_scale_count > 0.0f &&
+      std::count_if(response.begin(), response.end(), at_full_scale) > config_.saturated_samples) {
     ++counters_.saturated_responses;
     return false;
   }
   return true;
 }
 
-/// Leaves the turned response in work_.
+/// Leaves what is kept of the turned response in work_.
 TimeZeroResult ThroughWallNode::find_time_zero(Span<const float> response) {
   TimeZeroResult time_zero;
   if (!trusted(response)) {
@@ -205,7 +214,7 @@ bool ThroughWallNode::subtract_background(bool found) {
 void ThroughWallNode::detect(bool judges) {
   if (judges) (void)weak_signal_.process(cut(work_));  // what is not judged is 0
   taps_(TapId::kEnhanced, cut(work_));
-  (void)gaussian_cfar_.process(cut(work_), {decisions_.data(), static_cast<std::size_t>(config_.n_samples)});
+  (void)gaussian_cfar_.process(cut(work_), {decisions_.data(), n_kept_});
   tap_decisions();
 }
 

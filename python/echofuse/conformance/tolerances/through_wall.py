@@ -13,7 +13,7 @@ ROWS: dict[str, Tolerance] = {
     ),
     "through_wall.trace": Tolerance(1e-6, 0.0, "[sample] see node.target_trace"),
     "through_wall.edge": Tolerance(
-        1e-6, 3e-5, "of the peak, over the edge's rise; float32 of up to 511 samples"
+        1e-6, 3e-5, "of the peak, over the edge's rise; float32 of up to 700 samples"
     ),
     "through_wall.delay": Tolerance(
         1e-6, 3e-14, "the edge's and the cross-talk's fraction; float32 of 100 ns"

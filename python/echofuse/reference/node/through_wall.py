@@ -23,6 +23,7 @@ SAME_ECHO_SAMPLES = 1.0  # two traces that begin closer together are one
 
 class ThroughWallNodeConfig(Protocol):
     n_samples: int
+    kept_samples: int  # 0: all
     sample_rate_hz: float
     baseline_m: float
     delay_offset_s: float
@@ -77,7 +78,7 @@ class ThroughWallNode:
         """Take response (n_samples,) [count], beginning at any chip."""
         config = self._config
         state, place = self._turned(response)
-        subtracted = np.zeros_like(response)
+        subtracted = np.zeros_like(place.response)
         enhanced = subtracted
         if place.found:
             state = "judged" if self._clutter.ready else "settling"
@@ -122,15 +123,16 @@ class ThroughWallNode:
         return behind_cross_talk / config.sample_rate_hz + cross_talk_s + config.delay_offset_s
 
     def _turned(self, response: Samples) -> tuple[str, TimeZeroResult]:
-        """Why the response cannot be judged, if so, and what it is once turned to time zero."""
+        """Why the response cannot be judged, if so, and what is kept of it once turned to time zero."""
         config = self._config
-        nothing = TimeZeroResult(False, False, 0, 0.0, np.zeros_like(response), np.inf)
+        kept = min(config.kept_samples or config.n_samples, config.n_samples)
+        nothing = TimeZeroResult(False, False, 0, 0.0, np.zeros(kept), np.inf)
         if np.all(response == response[0]):
             return "dead", nothing
         full_scale = np.abs(response) >= config.full_scale_count
         if config.full_scale_count > 0.0 and np.count_nonzero(full_scale) > config.saturated_samples:
             return "saturated", nothing
-        place = self._time_zero.process(response)
+        place = self._time_zero.process(response, kept)
         if place.moved:
             self._forget()
         self._n_heard += 1

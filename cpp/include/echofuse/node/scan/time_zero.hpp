@@ -34,13 +34,14 @@ struct TimeZeroResult {
 /// Reference: python/echofuse/reference/node/scan/time_zero.py
 class TimeZeroFinder {
  public:
-  /// expected_samples: of the cross-talk behind transmission, >= 0. kInvalidConfig: the earlier configuration
-  /// stays in force.
+  /// n_samples: 3 to kMaxResponseSamples. expected_samples: of the cross-talk behind transmission, >= 0.
+  /// kInvalidConfig: the earlier configuration stays in force.
   Status configure(const TimeZeroConfig& config, int n_samples, float expected_samples);
 
   void reset();
 
-  /// response and rotated: (n_samples,) [count], not the same. rotated is all 0 where nothing was found.
+  /// response: (n_samples,) [count]. rotated: its first 1 to n_samples once turned, not in the same place; all 0 where
+  /// nothing was found.
   Status process(Span<const float> response, Span<float> rotated, TimeZeroResult& result);
 
   /// [sample] the cross-talk's place in what is rotated, its fraction apart
@@ -62,7 +63,7 @@ class TimeZeroFinder {
   int n_learnt_ = 0;
   int elsewhere_ = 0;  ///< responses in a row
   CrossTalk place_;
-  std::array<float, kMaxSamplesPerScan> mean_{};  ///< of the responses learnt
+  std::array<float, kMaxResponseSamples> mean_{};  ///< of the responses learnt
 };
 
 }  // namespace echofuse::node

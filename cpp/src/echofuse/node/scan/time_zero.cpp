@@ -18,7 +18,7 @@ const char* invalid_field(const TimeZeroConfig& config) {
 
 Status TimeZeroFinder::configure(const TimeZeroConfig& config, int n_samples, float expected_samples) {
   if (invalid_field(config) != nullptr) return Status::kInvalidConfig;
-  if (n_samples < 3 || n_samples > static_cast<int>(kMaxSamplesPerScan)) return Status::kInvalidConfig;
+  if (n_samples < 3 || n_samples > static_cast<int>(kMaxResponseSamples)) return Status::kInvalidConfig;
   if (!(expected_samples >= 0.0f && expected_samples < static_cast<float>(n_samples)))
     return Status::kInvalidConfig;
   config_ = config;
@@ -38,7 +38,7 @@ Status TimeZeroFinder::process(Span<const float> response, Span<float> rotated, 
   result = TimeZeroResult{};
   if (n_samples_ == 0) return Status::kNotConfigured;
   const auto n = static_cast<std::size_t>(n_samples_);
-  if (response.size() != n || rotated.size() != n) return Status::kInvalidInput;
+  if (response.size() != n || rotated.empty() || rotated.size() > n) return Status::kInvalidInput;
   std::fill(rotated.begin(), rotated.end(), 0.0f);
   if (!place_.found) {
     learn(response);
@@ -60,8 +60,10 @@ Status TimeZeroFinder::process(Span<const float> response, Span<float> rotated, 
   result.found = true;
   result.rotation_samples = (place_.sample - expected_ + n_samples_) % n_samples_;
   result.fraction_samples = place_.fraction_samples;
-  std::rotate_copy(response.begin(), response.begin() + result.rotation_samples, response.end(),
-                   rotated.begin());
+  const auto first = static_cast<std::size_t>(result.rotation_samples);
+  const std::size_t before_end = std::min(rotated.size(), n - first);
+  std::copy_n(response.begin() + first, before_end, rotated.begin());
+  std::copy_n(response.begin(), rotated.size() - before_end, rotated.begin() + before_end);
   return Status::kOk;
 }
 
@@ -93,7 +95,7 @@ TimeZeroFinder::CrossTalk TimeZeroFinder::cross_talk(Span<const float> response)
   int last_strong = -1;
   int longest_rest = -1;
   for (int k = 0; k < n_samples_; ++k) {
-    const float a = amplitude(k);
+    const float a = std::abs(response[static_cast<std::size_t>(k)]);  // amplitude(k), which divides
     if (!(a >= level && a > amplitude(k - 1) && a >= amplitude(k + 1))) continue;
     const int rest = k - last_strong - 1;
     if (first_strong < 0) {

@@ -21,7 +21,7 @@ class TimeZeroResult(NamedTuple):
     moved: bool  # the radar was switched on anew: what was learnt is void, and learning begins again
     rotation: int  # [sample] to the left
     fraction_samples: float  # cross-talk behind its sample, in [-0.5, 0.5]
-    response: Samples  # (n,) rotated; all 0 while it is not known
+    response: Samples  # (n_kept,) rotated and cut; all 0 while it is not known
     margin: float  # least relative distance of a deciding comparison from flipping
 
 
@@ -67,8 +67,9 @@ class TimeZero:
         self.place: CrossTalk | None = None
         self.elsewhere = 0  # responses in a row
 
-    def process(self, response: Samples) -> TimeZeroResult:
-        nothing = np.zeros_like(response)
+    def process(self, response: Samples, kept_samples: int = 0) -> TimeZeroResult:
+        """Turn response (n,) [count] and keep so many samples of it from its beginning; 0: all."""
+        nothing = np.zeros(kept_samples or len(response))
         if self.place is None:
             self.learnt.append(response)
             if len(self.learnt) < self.config.learning_responses:
@@ -89,6 +90,5 @@ class TimeZero:
             return TimeZeroResult(False, False, 0, 0.0, nothing, here.margin)
         self.elsewhere = 0
         rotation = (self.place.sample - self.expected) % n
-        return TimeZeroResult(
-            True, False, rotation, self.place.fraction_samples, np.roll(response, -rotation), here.margin
-        )
+        kept = np.roll(response, -rotation)[: len(nothing)]
+        return TimeZeroResult(True, False, rotation, self.place.fraction_samples, kept, here.margin)
