@@ -68,6 +68,14 @@ TEST_CASE("Each of the paper's rules stops it and is named") {
   CHECK(fix.status == Taylor3dStatus::kIterationLimit);
   CHECK(fix.iterations == 1);
 
+  config.max_iterations = 0;
+  REQUIRE(taylor.configure(config, {}, kCross) == Status::kOk);
+  REQUIRE(taylor.process(path_m, kVariance_m2, {0.5f, 3.5f, 0.0f}, fix) == Status::kOk);
+  CHECK(fix.status == Taylor3dStatus::kIterationLimit);
+  CHECK(fix.iterations == 0);
+  CHECK(distance_m(fix.position, {0.5f, 3.5f, 0.0f}) == 0.0);
+  CHECK(fix.covariance_m2[0] > 0.0f);
+
   config = in_the_open();  // a path shorter than the direct one: no place explains it
   std::array<float, 4> impossible = path_m;
   impossible[0] = 0.1f;

@@ -46,6 +46,7 @@ def configs():  # type: ignore[no-untyped-def]
         for kind in (kinds.none, kinds.first_kind, kinds.second_kind):
             wall = _core.WallConfig(thickness_m=0.2, compensation=kind)
             yield _core.Taylor3dConfig(wall=wall, start=getattr(_core.Taylor3dStart, start)), CROSS
+        yield _core.Taylor3dConfig(start=getattr(_core.Taylor3dStart, start), max_iterations=0), CROSS
     wall = _core.WallConfig(compensation=kinds.second_kind)
     yield _core.Taylor3dConfig(wall=wall), np.concatenate([CROSS, EXTRA])
     given = {"wall": _core.WallConfig(compensation=kinds.none), "start": _core.Taylor3dStart.given}
@@ -53,14 +54,14 @@ def configs():  # type: ignore[no-untyped-def]
     yield _core.Taylor3dConfig(**given, range_kind=_core.RangeKind.one_way), ANCHORS
 
 
-@pytest.mark.parametrize("case", range(9))
+@pytest.mark.parametrize("case", range(11))
 def test_taylor_3d(case):  # type: ignore[no-untyped-def]
     config, rx = list(configs())[case]
     board, rng, taylor = Scoreboard(), np.random.default_rng(case), _core.Taylor3d()
     assert taylor.configure(config, ORIGIN, rx) == _core.Status.ok
     reference, rx64, zero = as_reference(config), rx.astype(np.float64), np.zeros(3)
     anchors = rx is ANCHORS
-    converged = 0
+    located = 0
     for trial in range(150):
         z = (
             rng.uniform([0.5, 0.5, 0.3], [5.5, 4.5, 2.3])
@@ -82,9 +83,9 @@ def test_taylor_3d(case):  # type: ignore[no-untyped-def]
         same = board.decisions(
             "", "status", str(trial), [fix.status.name], [expected.status], expected.margin
         )
-        if not same or expected.status != "converged":
+        if not same or expected.status not in ("converged", "iteration_limit"):
             continue
-        converged += 1
+        located += 1
         where = str(trial)
         upper = expected.covariance_m2[np.triu_indices(3)]
         board.floats("", "position", where, fix.position_m, expected.position_m, "hub.taylor_3d.position")
@@ -97,7 +98,7 @@ def test_taylor_3d(case):  # type: ignore[no-untyped-def]
             [expected.range_residual_m],
             "hub.taylor_3d.residual",
         )
-    assert converged > 140
+    assert located > 140
     for row in board.rows():
         assert row.passed, row.failures[:3]
         assert row.excused < 3
@@ -155,6 +156,6 @@ def test_bad_input_is_refused():  # type: ignore[no-untyped-def]
     assert (status, fix.status) == (_core.Status.ok, _core.Taylor3dStatus.no_start)
     missing[1] = np.inf
     assert taylor.process(path, missing, ORIGIN)[0] == _core.Status.invalid_input
-    bad_fields = [("min_step_m", 0.0), ("max_iterations", 0)]
+    bad_fields = [("min_step_m", 0.0), ("max_iterations", -1)]
     for name, value in bad_fields:
         assert _core.Taylor3dConfig(**{name: value}).invalid_field() == name

@@ -23,6 +23,15 @@ enum class RangeKind : std::uint8_t {
   kOneWay,    ///< target -> receiver: ranges to anchors
 };
 
+/// One way between a position and an antenna in the plane y = 0, through the wall.
+struct AntennaRay3d {
+  float optical_m = 0.0f;  ///< [m] speed of light times the time
+  Point3 gradient;         ///< [1] of it with respect to the position; a unit vector
+};
+
+/// position: y_m > antenna's, as antenna_ray() on a line.
+AntennaRay3d antenna_ray_3d(const Wall& wall, const Point3& position, const Point3& antenna);
+
 /// How the iteration ended, by the paper's rules; (b) is to go on.
 enum class Taylor3dStatus : std::uint8_t {
   kConverged,       ///< (c) the last step was not over min_step_m
@@ -37,7 +46,7 @@ struct Taylor3dConfig {
   Taylor3dStart start = Taylor3dStart::kThreeDTwoD;
   RangeKind range_kind = RangeKind::kBistatic;
   float min_step_m = 1e-4f;  ///< [m] epsilon of the paper, > 0
-  int max_iterations = 20;   ///< N of the paper, in [1, 100]
+  int max_iterations = 20;   ///< N of the paper, in [0, 100]; 0: the start itself
 };
 
 /// nullptr, or the name of the first member with an impossible value.

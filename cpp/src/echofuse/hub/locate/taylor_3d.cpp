@@ -56,12 +56,23 @@ struct Taylor3d::Information {
   float squares_m2 = 0.0f;             ///< D^T D
 };
 
+AntennaRay3d antenna_ray_3d(const Wall& wall, const Point3& position, const Point3& antenna) {
+  const float dx = position.x_m - antenna.x_m;
+  const float dy = position.y_m - antenna.y_m;
+  const float dz = position.z_m - antenna.z_m;
+  const float lateral_m = std::sqrt(dx * dx + dz * dz);
+  const float straight_m = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const WallRay ray = wall.ray(lateral_m, dy);
+  const float per_lateral = lateral_m > 0.0f ? ray.lateral / lateral_m : 0.0f;
+  return {straight_m + ray.excess_m, {dx * per_lateral, ray.depth, dz * per_lateral}};
+}
+
 const char* invalid_field(const Taylor3dConfig& config) {
   if (invalid_field(config.wall) != nullptr) return "wall";
   if (config.start > Taylor3dStart::kGiven) return "start";
   if (config.range_kind > RangeKind::kOneWay) return "range_kind";
   if (!(config.min_step_m > 0.0f && std::isfinite(config.min_step_m))) return "min_step_m";
-  if (!(config.max_iterations >= 1 && config.max_iterations <= 100)) return "max_iterations";
+  if (!(config.max_iterations >= 0 && config.max_iterations <= 100)) return "max_iterations";
   return nullptr;
 }
 
@@ -125,20 +136,18 @@ bool Taylor3d::start(const Ranges& ranges, const Point3& given, Taylor3dFix& fix
 
 /// [m] optical path between an antenna and a position, with its gradient by the position.
 float Taylor3d::leg(const Point3& position, const Point3& antenna, Point3& gradient) const {
+  if (in_plane_) {
+    const AntennaRay3d ray = antenna_ray_3d(wall_, position, antenna);
+    gradient = ray.gradient;
+    return ray.optical_m;
+  }
   const float dx = position.x_m - antenna.x_m;
   const float dy = position.y_m - antenna.y_m;
   const float dz = position.z_m - antenna.z_m;
-  const float lateral_m = std::sqrt(dx * dx + dz * dz);
   const float straight_m = std::sqrt(dx * dx + dy * dy + dz * dz);
-  if (!in_plane_) {
-    const float per_m = straight_m > 0.0f ? 1.0f / straight_m : 0.0f;
-    gradient = {dx * per_m, dy * per_m, dz * per_m};
-    return straight_m;
-  }
-  const WallRay ray = wall_.ray(lateral_m, dy);
-  const float per_lateral = lateral_m > 0.0f ? ray.lateral / lateral_m : 0.0f;
-  gradient = {dx * per_lateral, ray.depth, dz * per_lateral};
-  return straight_m + ray.excess_m;
+  const float per_m = straight_m > 0.0f ? 1.0f / straight_m : 0.0f;
+  gradient = {dx * per_m, dy * per_m, dz * per_m};
+  return straight_m;
 }
 
 void Taylor3d::linearise(const Ranges& ranges, const Point3& position, Information& sums) const {
@@ -172,7 +181,8 @@ Status Taylor3d::process(Span<const float> range_m, Span<const float> variance_m
   Information sums;
   Eigen::LLT<Matrix3> cholesky;
   float previous_m = std::numeric_limits<float>::infinity();
-  for (bool stopped = false;;) {
+  fix.status = Taylor3dStatus::kIterationLimit;
+  for (bool stopped = config_.max_iterations == 0;;) {
     linearise(ranges, fix.position, sums);
     if (!factor(sums.matrix, cholesky)) {
       fix.status = Taylor3dStatus::kSingular;

@@ -21,7 +21,7 @@ class Taylor3dConfig(Protocol):
     start: str  # three_d_two_d | approximate | given
     range_kind: str  # bistatic | one_way
     min_step_m: float
-    max_iterations: int
+    max_iterations: int  # 0: the start itself
 
 
 class Taylor3dFix(NamedTuple):
@@ -98,7 +98,8 @@ def taylor_3d(
     if in_plane:
         position[1] = max(position[1], MIN_DEPTH_M)
     root_weight = 1.0 / np.sqrt(variance_m2[used])
-    previous, margin, iterations, status = np.inf, 1.0, 0, ""
+    previous, margin, iterations = np.inf, 1.0, 0
+    status = "" if config.max_iterations > 0 else "iteration_limit"
     while True:
         predicted, gradient = ranges_and_gradient(config, tx_m, rx_m, position)
         rows, residual = gradient[used] * root_weight[:, None], (range_m - predicted)[used]
