@@ -23,6 +23,14 @@ py::dict counters(const ThroughWallHub& self) {
   return by_name;
 }
 
+template <int kDimension>
+Eigen::Matrix<float, kDimension, 1> as_vector(const FloatArray& array, const char* name) {
+  const auto values = as_span(array, name);
+  if (values.size() != kDimension)
+    throw py::value_error(std::string(name) + " must have shape (" + std::to_string(kDimension) + ",)");
+  return Eigen::Map<const Eigen::Matrix<float, kDimension, 1>>(values.data());
+}
+
 /// Paths of each receiver (n_r,) [m], as a frame holds them.
 void fill_paths(const std::vector<FloatArray>& paths, BoundedVector<hub::FrameDetection>& frame) {
   for (std::size_t r = 0; r < paths.size(); ++r)
@@ -31,8 +39,7 @@ void fill_paths(const std::vector<FloatArray>& paths, BoundedVector<hub::FrameDe
         throw py::value_error("paths_m: more than a frame holds");
 }
 
-void bind_path_tracker(py::module_& m) {
-  using hub::PathTracker;
+void bind_path_tracker_config(py::module_& m) {
   ConfigBinder<PathTrackerConfig>(m, "PathTrackerConfig", "Tracks that choose among the receivers' traces.")
       .field("acceleration_density_m2ps3", &PathTrackerConfig::acceleration_density_m2ps3, "[m^2/s^3], > 0")
       .field("velocity_std_mps", &PathTrackerConfig::velocity_std_mps, "[m/s] at birth, > 0")
@@ -50,15 +57,33 @@ void bind_path_tracker(py::module_& m) {
       .field("birth_exclusion_m", &PathTrackerConfig::birth_exclusion_m, "[m] from other tracks, >= 0")
       .field("merge_distance_m", &PathTrackerConfig::merge_distance_m, "[m] two that are one person, >= 0")
       .field("merge_speed_mps", &PathTrackerConfig::merge_speed_mps, "[m/s] and as fast, >= 0")
-      .field("max_tracks", &PathTrackerConfig::max_tracks);
-  py::class_<PathTracker>(m, "PathTracker")
+      .field("max_tracks", &PathTrackerConfig::max_tracks)
+      .field("path_std_growth", &PathTrackerConfig::path_std_growth,
+             "[1/m] of both path deviations beyond 4 m, >= 0")
+      .field("body_half_height_m", &PathTrackerConfig::body_half_height_m, "[m] in space, >= 0; 0: a ball");
+}
+
+template <int kDimension>
+void bind_path_tracker(py::module_& m, const char* name) {
+  using PathTracker = hub::PathTracker<kDimension>;
+  using Vector = typename PathTracker::Vector;
+  py::class_<PathTracker>(m, name)
       .def(py::init<>())
       .def(
           "configure",
           [](PathTracker& self, const PathTrackerConfig& config, const hub::WallConfig& wall,
-             const FloatArray& rx_x,
-             const hub::Area& area) { return self.configure(config, wall, as_span(rx_x, "rx_x_m"), area); },
-          py::arg("config"), py::arg("wall"), py::arg("rx_x_m").noconvert(), py::arg("area"))
+             const FloatArray& rx, const FloatArray& least, const FloatArray& most, float body_radius_m) {
+            const auto rows = as_span_of_rows(rx, kDimension, "rx_m");
+            std::vector<Vector> receivers;
+            for (std::size_t i = 0; i < rows.size(); i += kDimension)
+              receivers.push_back(Eigen::Map<const Vector>(rows.data() + i));
+            return self.configure(config, wall, {receivers.data(), receivers.size()},
+                                  as_vector<kDimension>(least, "least_m"),
+                                  as_vector<kDimension>(most, "most_m"), body_radius_m);
+          },
+          py::arg("config"), py::arg("wall"), py::arg("rx_m").noconvert(), py::arg("least_m").noconvert(),
+          py::arg("most_m").noconvert(), py::arg("body_radius_m") = 0.0f,
+          "rx_m (n, d) from the transmitter, corners least_m, most_m (d,) of where people can be [m].")
       .def("reset", &PathTracker::reset)
       .def(
           "update",
@@ -74,7 +99,17 @@ void bind_path_tracker(py::module_& m) {
           "(status, owners): paths_m is a list of one array a receiver (n,) [m]; owners is the id of the "
           "track "
           "that took each, one after the other, 0 if none did.")
-      .def("begin", &PathTracker::begin, py::arg("fix"))
+      .def(
+          "begin",
+          [](PathTracker& self, const FloatArray& position, const FloatArray& covariance) {
+            const auto entries = as_span_of_rows(covariance, kDimension, "covariance_m2");
+            if (entries.size() != kDimension * kDimension)
+              throw py::value_error("covariance_m2 must be a square matrix");
+            return self.begin(as_vector<kDimension>(position, "position_m"),
+                              Eigen::Map<const typename PathTracker::PositionCovariance>(entries.data()));
+          },
+          py::arg("position_m").noconvert(), py::arg("covariance_m2").noconvert(),
+          "At a fix (d,) [m] of covariance (d, d) [m^2].")
       .def(
           "tracks",
           [](const PathTracker& self) {
@@ -89,7 +124,9 @@ void bind_path_tracker(py::module_& m) {
 }  // namespace
 
 void bind_hub_through_wall(py::module_& m) {
-  bind_path_tracker(m);
+  bind_path_tracker_config(m);
+  bind_path_tracker<2>(m, "PathTracker");
+  bind_path_tracker<3>(m, "PathTracker3d");
   using Config = ThroughWallHubConfig;
   ConfigBinder<Config> config(m, "ThroughWallHubConfig", "The hub of the pipeline through_wall_2d.");
   config.field("nodes", &Config::nodes, "the first n_nodes")

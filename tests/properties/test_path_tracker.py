@@ -20,10 +20,10 @@ CONFIRMED = 1
 def a_tracker(n_receivers: int = 2, **settings: float) -> tuple["_core.PathTracker", NDArray[np.float64]]:
     rx_x_m = np.linspace(-0.4, 0.4, n_receivers) if n_receivers != 3 else np.array([-0.4, 0.2, 0.4])
     tracker = _core.PathTracker()
-    area = _core.Area(min_x_m=-2.1, min_y_m=0.7, max_x_m=2.1, max_y_m=5.9)
-    status = tracker.configure(
-        _core.PathTrackerConfig(**settings), _core.WallConfig(), rx_x_m.astype(np.float32), area
-    )
+    rx_m = np.column_stack([rx_x_m, np.zeros(n_receivers)]).astype(np.float32)
+    least_m, most_m = np.array([-2.1, 0.7], np.float32), np.array([2.1, 5.9], np.float32)
+    config = _core.PathTrackerConfig(**settings)
+    status = tracker.configure(config, _core.WallConfig(), rx_m, least_m, most_m)
     assert status == _core.Status.ok
     return tracker, rx_x_m
 
@@ -33,12 +33,16 @@ def paths_to(x_m: float, y_m: float, rx_x_m: NDArray[np.float64]) -> list[NDArra
     return [np.array([path], np.float32) for path in paths]
 
 
-def fix_of(paths: Sequence[NDArray[np.float32]], rx_x_m: NDArray[np.float64]) -> "_core.LineFix":
+def fix_of(
+    paths: Sequence[NDArray[np.float32]], rx_x_m: NDArray[np.float64]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Position (2,) and its covariance (2, 2)."""
     locator = _core.LineLocator()
     locator.configure(_core.LineLocatorConfig(), rx_x_m.astype(np.float32))
     status, fix = locator.process(np.concatenate(paths), np.ones(len(rx_x_m), np.float32))
     assert (status, fix.status) == (_core.Status.ok, _core.LineFixStatus.fix)
-    return fix
+    xx, xy, yy = fix.covariance_m2
+    return np.array(fix.position_m, np.float32), np.array([[xx, xy], [xy, yy]], np.float32)
 
 
 @pytest.mark.parametrize("n_receivers", [2, 3, 4])
@@ -55,7 +59,7 @@ def test_one_person_is_one_track_where_she_is(
         assert status == _core.Status.ok
         if step == 0:
             assert not owners.any()
-            assert tracker.begin(fix_of(paths, rx_x_m)) == _core.Status.ok
+            assert tracker.begin(*fix_of(paths, rx_x_m)) == _core.Status.ok
         else:
             assert list(owners) == [1] * n_receivers
     (track,) = tracker.tracks()
@@ -77,7 +81,7 @@ def test_people_at_the_same_range_keep_their_traces() -> None:
         assert status == _core.Status.ok
         if step == 0:
             for person in both:
-                tracker.begin(fix_of(person, rx_x_m))
+                tracker.begin(*fix_of(person, rx_x_m))
             continue
         assert list(owners) == [1, 2, 2, 1]
     assert sorted(np.round(tracker.tracks()["x_m"], 1)) == pytest.approx([-0.9, 0.9], abs=0.11)
@@ -87,7 +91,7 @@ def test_a_receiver_that_falls_silent_ends_the_tracks_and_begins_none() -> None:
     tracker, rx_x_m = a_tracker()
     paths = paths_to(0.3, 3.0, rx_x_m)
     tracker.update(paths, PERIOD_S)
-    tracker.begin(fix_of(paths, rx_x_m))
+    tracker.begin(*fix_of(paths, rx_x_m))
     for _ in range(10):
         tracker.update(paths, PERIOD_S)
     assert len(tracker.tracks()) == 1
@@ -103,7 +107,7 @@ def test_tracks_stay_in_the_room() -> None:
         paths = paths_to(0.0, 5.0 + 0.07 * step, rx_x_m)
         tracker.update(paths, PERIOD_S)
         if step == 0:
-            tracker.begin(fix_of(paths, rx_x_m))
+            tracker.begin(*fix_of(paths, rx_x_m))
     nothing = [np.zeros(0, np.float32)] * 2
     for _ in range(10):
         tracker.update(nothing, PERIOD_S)
@@ -114,9 +118,13 @@ def test_tracks_stay_in_the_room() -> None:
 def test_births_beyond_the_last_track_are_counted() -> None:
     tracker, rx_x_m = a_tracker(max_tracks=2)
     fixes = [fix_of(paths_to(x_m, 3.0, rx_x_m), rx_x_m) for x_m in (-1.5, 0.0, 1.5)]
-    assert [tracker.begin(fix) for fix in fixes] == [_core.Status.ok, _core.Status.ok, _core.Status.truncated]
+    assert [tracker.begin(*fix) for fix in fixes] == [
+        _core.Status.ok,
+        _core.Status.ok,
+        _core.Status.truncated,
+    ]
     assert tracker.dropped_births() == 1
-    assert tracker.begin(fixes[0]) == _core.Status.ok  # near a track: nothing to begin
+    assert tracker.begin(*fixes[0]) == _core.Status.ok  # near a track: nothing to begin
     assert len(tracker.tracks()) == 2
 
 

@@ -100,7 +100,7 @@ class ThroughWallHub {
   FrameClock clock_;
   TracePairing trace_pairing_;
   LineLocator line_locator_;
-  PathTracker path_tracker_;
+  PathTracker<2> path_tracker_;
   KalmanTracker<2> kalman_tracker_;
   Point tx_;                                        ///< origin of the stages
   std::array<float, kMaxArrayReceivers> rx_x_m_{};  ///< from there

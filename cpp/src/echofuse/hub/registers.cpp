@@ -162,6 +162,8 @@ constexpr link::RegisterField kThroughWallFields[] = {
     FIELD(path_tracker.merge_distance_m),
     FIELD(path_tracker.merge_speed_mps),
     FIELD(path_tracker.max_tracks),
+    FIELD(path_tracker.path_std_growth),
+    FIELD(path_tracker.body_half_height_m),
     TRACK_FIELDS,
 };
 

@@ -63,13 +63,17 @@ Status ThroughWallHub::configure(const ThroughWallHubConfig& config) {
     if (rx_x_m_[r] > rx_x_m_[last_]) last_ = r;
   }
   const Span<const float> rx_x_m{rx_x_m_.data(), nodes.size()};
+  std::array<Eigen::Vector2f, kMaxArrayReceivers> rx_m;
+  for (std::size_t r = 0; r < nodes.size(); ++r) rx_m[r] = {rx_x_m_[r], 0.0f};
+  const Area inner = inner_area(config);
   TracePairingConfig pairing = config.trace_pairing;
   pairing.separation_m = rx_x_m_[last_] - rx_x_m_[first_];
   if (config.track_aided) pairing.completion_limit = 0;  // tracks do that, and better
   const Status made[] = {
       frame_assembler_.configure(config.frame_assembler, nodes), trace_pairing_.configure(pairing),
       line_locator_.configure(config.line_locator, rx_x_m),
-      path_tracker_.configure(config.path_tracker, config.line_locator.wall, rx_x_m, inner_area(config)),
+      path_tracker_.configure(config.path_tracker, config.line_locator.wall, {rx_m.data(), nodes.size()},
+                              {inner.min_x_m, inner.min_y_m}, {inner.max_x_m, inner.max_y_m}),
       kalman_tracker_.configure(config.tracks)};
   for (const Status status : made) ECHOFUSE_CHECK(status == Status::kOk);  // invalid_field() saw to it
   configured_ = true;
@@ -171,7 +175,10 @@ Status ThroughWallHub::locate(const TraceCouple& couple, std::int32_t number) {
   }
   const auto n_paths = static_cast<int>(std::count(weight_.begin(), weight_.end(), 1.0f));
   ECHOFUSE_CHECK(points_.try_push_back({fix.position, n_paths, least_weight_}));  // as many as couples
-  return config_.track_aided ? path_tracker_.begin(fix) : Status::kOk;
+  if (!config_.track_aided) return Status::kOk;
+  Eigen::Matrix2f covariance;
+  covariance << fix.covariance_xx_m2, fix.covariance_xy_m2, fix.covariance_xy_m2, fix.covariance_yy_m2;
+  return path_tracker_.begin({fix.position.x_m, fix.position.y_m}, covariance);
 }
 
 LineFix ThroughWallHub::locate_paths() {

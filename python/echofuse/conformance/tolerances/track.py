@@ -10,5 +10,9 @@ ROWS: dict[str, Tolerance] = {
     "hub.track.mass": Tolerance(2e-5, 1e-6, "a sum of such weights"),
     "hub.track.peak": Tolerance(0.0, 1e-4, "[m], [m/s] see estimation.mixture"),
     "hub.track.track": Tolerance(2e-6, 2e-4, "[m], [m/s] from such peaks; faded while silent"),
+    "hub.track.tall": Tolerance(
+        0.0, 7e-4, "[m], [m/s] as through_wall.track, of a height that changes paths a third as much"
+    ),
+    "hub.track.tall_covariance": Tolerance(7e-4, 7e-6, "[m^2] as through_wall.covariance, likewise"),
     "hub.track.kalman": Tolerance(3e-6, 1e-5, "[m], [m/s] 40 frames of a 4 x 4 filter in float32"),
 }

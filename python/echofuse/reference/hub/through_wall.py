@@ -71,7 +71,8 @@ class ThroughWallHub:
         if config.track_aided:
             pairing["completion_limit"] = 0
         self.pairing = TracePairing(SimpleNamespace(**pairing))
-        self.paths = PathTracker(config.path_tracker, config.line_locator.wall, self.rx_x_m, inner)
+        rx_m = np.column_stack([self.rx_x_m, np.zeros(len(nodes))])
+        self.paths = PathTracker(config.path_tracker, config.line_locator.wall, rx_m, inner)
         self.kalman = KalmanTracker(
             SimpleNamespace(**(vars(config.tracks) | {"update": "kalman"})), max_tracks
         )

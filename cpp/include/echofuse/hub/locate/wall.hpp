@@ -42,6 +42,9 @@ class Wall {
   /// 1 cm of it, so a place within the wall is taken as just behind it.
   WallRay ray(float lateral_m, float depth_m) const;
 
+  /// [m] by which the way of a ray() over depth_m along the wall grows with the tangent of its angle in air.
+  float spread_m(const WallRay& ray, float depth_m) const;
+
   /// [m] excess of one way at normal incidence, w (sqrt(e) - 1); 0 without compensation.
   float normal_excess_m() const;
 

@@ -10,8 +10,7 @@
 #include "echofuse/core/span.hpp"
 #include "echofuse/core/status.hpp"
 #include "echofuse/estimation/kalman.hpp"
-#include "echofuse/hub/locate/line_locator.hpp"
-#include "echofuse/hub/locate/site.hpp"
+#include "echofuse/hub/locate/wall.hpp"
 #include "echofuse/hub/measure/frame.hpp"
 #include "echofuse/link/messages.hpp"
 
@@ -35,23 +34,34 @@ struct PathTrackerConfig {
   float merge_distance_m = 0.3f;        ///< [m] two confirmed tracks nearer than that, >= 0
   float merge_speed_mps = 0.6f;         ///< [m/s] and as fast, are one person, >= 0
   int max_tracks = 10;                  ///< in [1, kMaxTracks]
+  float path_std_growth = 0.0f;         ///< [1/m] of both path deviations, beyond 4 m of the mean path, >= 0
+  float body_half_height_m = 0.0f;      ///< [m] of an upright body, in space alone, >= 0; 0: a ball
 };
 
 /// nullptr, or the name of the first member with an impossible value.
 const char* invalid_field(const PathTrackerConfig& config);
 
-/// Tracks from the paths of traces before a line of antennas: an extended Kalman filter a person, whose prediction takes
+/// Tracks from the paths of traces before a plane of antennas: an extended Kalman filter a person, whose prediction takes
 /// part in the pairing (the through-wall paper, section 4, names what goes wrong without). Each track looks among
 /// all combinations of the receivers' traces for the one of least Mahalanobis distance; the best go first. Of the traces
 /// taken, the mean path is used as it is, and what differs between receivers (the cross-range) is cut off at a few
-/// deviations, since one in ten is wrong by decimetres. The transmitter is the origin, x runs along the antennas, y > 0
-/// is the depth. Reference: python/echofuse/reference/hub/track/path_tracker.py
+/// deviations, since one in ten is wrong by decimetres. The transmitter is the origin, x runs along the wall, y > 0
+/// is the depth, z points upwards. In space a body is an upright ellipsoid of half-width a and half-height h, and its
+/// echo begins where it is nearest: the path is that of its middle less s(g) = sqrt(a^2 (gx^2 + gy^2) + h^2 gz^2), g
+/// the gradient of the middle's path. Reference: python/echofuse/reference/hub/track/path_tracker.py
+template <int kDimension>
 class PathTracker {
+  using Filter = estimation::ConstantVelocityFilter<kDimension>;
+
  public:
-  /// rx_x_m: (n,) as LineLocator's. area: where a person's middle can be, behind the line. Also resets.
-  /// kInvalidConfig: the earlier configuration and state stay in force.
-  Status configure(const PathTrackerConfig& config, const WallConfig& wall, Span<const float> rx_x_m,
-                   const Area& area);
+  using Vector = typename Filter::Vector;                          ///< [m] x, y, and in space z
+  using PositionCovariance = typename Filter::PositionCovariance;  ///< [m^2]
+
+  /// rx_m: (n,) kDimension <= n <= kMaxArrayReceivers, y = 0, all different and none at the transmitter. least_m, most_m:
+  /// corners of where a person's middle can be, behind the antennas. body_radius_m: in space, a >= 0, of which update()'s
+  /// paths hold 2 a more than was measured. Also resets. kInvalidConfig: the earlier configuration and state stay in force.
+  Status configure(const PathTrackerConfig& config, const WallConfig& wall, Span<const Vector> rx_m,
+                   const Vector& least_m, const Vector& most_m, float body_radius_m = 0.0f);
   void reset();
 
   /// One response, dt_s > 0 [s] after the last. paths: ascending receiver (node_index), then path [m].
@@ -60,7 +70,7 @@ class PathTracker {
   Status update(Span<const FrameDetection> paths, float dt_s, Span<std::int32_t> owners);
 
   /// Begins a track at a fix that no track explains. kTruncated: no room for it. Near another track none begins.
-  Status begin(const LineFix& fix);
+  Status begin(const Vector& position_m, const PositionCovariance& covariance_m2);
 
   /// All that live, ascending id; its time and frame stay the caller's.
   void report(link::Tracks& tracks) const;
@@ -80,11 +90,16 @@ class PathTracker {
     std::int32_t misses = 0;
     int lone = 0;
     float silent_time_s = 0.0f;
-    estimation::ConstantVelocityFilter<2> filter;
+    Filter filter;
+  };
+  struct Leg {  ///< one way between a position and an antenna
+    float optical_m;
+    Vector gradient;  ///< [1] of it with respect to the position
   };
   struct Prediction {  ///< of each receiver's path
     std::array<float, kMaxArrayReceivers> path_m{};
-    std::array<Eigen::Vector2f, kMaxArrayReceivers> gradient;
+    std::array<Vector, kMaxArrayReceivers> gradient;
+    float own_m2 = 0.0f, common_m2 = 0.0f;  ///< [m^2] variances of paths as long
   };
   struct Choice {
     float distance = 0.0f;  ///< infinite: none
@@ -93,8 +108,9 @@ class PathTracker {
   /// The combination so far, as a filter of what its errors have in common and of the position: a Mahalanobis distance
   /// in steps, one receiver at a time.
   struct Partial {
-    Eigen::Vector3f state = Eigen::Vector3f::Zero();  ///< [m] common error, x, y, about the prediction
-    Eigen::Matrix3f covariance;                       ///< [m^2]
+    using State = Eigen::Matrix<float, 1 + kDimension, 1>;
+    State state = State::Zero();  ///< [m] common error, then the position, about the prediction
+    Eigen::Matrix<float, 1 + kDimension, 1 + kDimension> covariance;  ///< [m^2]
     float distance = 0.0f;
     int present = 0;  ///< receivers with a trace
   };
@@ -112,8 +128,9 @@ class PathTracker {
   Choice best_choice(const TrackState& track);
   bool add(const Prediction& prediction, std::size_t receiver, int trace, Partial& partial) const;
   Prediction predicted(const TrackState& track) const;
+  Leg leg(const Vector& position, const Vector& antenna) const;
   void take(TrackState& track, const Traces& traces) const;
-  void take_along(TrackState& track, const Eigen::Vector2f& direction, float innovation_m, float variance_m2,
+  void take_along(TrackState& track, const Vector& direction, float innovation_m, float variance_m2,
                   bool cut) const;
   bool take_lone(TrackState& track);
   bool lives(TrackState& track, float dt_s) const;
@@ -121,8 +138,10 @@ class PathTracker {
 
   PathTrackerConfig config_;
   Wall wall_;
-  Area area_;
-  std::array<float, kMaxArrayReceivers> rx_x_m_{};
+  Vector least_m_ = Vector::Zero(), most_m_ = Vector::Zero();
+  Vector body_m2_ = Vector::Zero();  ///< [m^2] squared half axes of a body
+  float body_radius_m_ = 0.0f;
+  std::array<Vector, kMaxArrayReceivers> rx_m_;
   std::size_t n_receivers_ = 0;  ///< 0 until configured
 
   BoundedVector<TrackState, kMaxTracks> tracks_;

@@ -50,6 +50,15 @@ WallRay Wall::ray(float lateral_m, float depth_m) const {
   return {optical - hypotenuse(lateral_m, air + w), p, 1.0f / secant};
 }
 
+float Wall::spread_m(const WallRay& ray, float depth_m) const {
+  const float w = config_.thickness_m;
+  const float e = config_.relative_permittivity;
+  if (config_.compensation != WallCompensation::kSecondKind || w == 0.0f) return depth_m;
+  const float q = ray.lateral / ray.depth;
+  const float squared = e + (e - 1.0f) * q * q;
+  return std::max(depth_m - w, kMinAir_m) + w * e / (squared * std::sqrt(squared));
+}
+
 float Wall::normal_excess_m() const {
   if (config_.compensation == WallCompensation::kNone) return 0.0f;
   return config_.thickness_m * (std::sqrt(config_.relative_permittivity) - 1.0f);

@@ -4,17 +4,48 @@
 #include <cmath>
 #include <limits>
 
+#include "echofuse/hub/locate/line_locator.hpp"
+#include "echofuse/hub/locate/taylor_3d.hpp"
+#include "report_tracks.hpp"
+
 namespace echofuse::hub {
 namespace {
 
 constexpr float kMinDepth_m = 0.02f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kMaxWindow = 32;  ///< bits of the updates
-
-using Filter = estimation::ConstantVelocityFilter<2>;
+constexpr int kMaxWindow = 32;           ///< bits of the updates
+constexpr float kGrowthBegins_m = 4.0f;  ///< [m] of a mean path
 
 bool positive(float value) { return value > 0.0f && std::isfinite(value); }
 bool not_negative(float value) { return value >= 0.0f && std::isfinite(value); }
+
+template <int kDimension>
+bool possible(Span<const Eigen::Matrix<float, kDimension, 1>> rx_m) {
+  if (rx_m.size() < static_cast<std::size_t>(kDimension) || rx_m.size() > kMaxArrayReceivers) return false;
+  for (std::size_t i = 0; i < rx_m.size(); ++i) {
+    if (!rx_m[i].allFinite() || rx_m[i](1) != 0.0f || rx_m[i].isZero(0.0f)) return false;
+    for (std::size_t k = 0; k < i; ++k)
+      if (rx_m[i] == rx_m[k]) return false;
+  }
+  return true;
+}
+
+/// The second derivative of an antenna's ray by the position, times a vector: how the gradient, a unit vector in air, turns
+/// when the position moves. With q the tangent of its angle, along the wall that is by cos^3 / (d lateral / d q) a metre,
+/// and about the antenna's normal by sin / lateral. offset_m: position less antenna.
+Eigen::Vector3f turned(const Wall& wall, const Eigen::Vector3f& offset_m, const Eigen::Vector3f& gradient,
+                       const Eigen::Vector3f& by) {
+  const float sine = std::sqrt(gradient(0) * gradient(0) + gradient(2) * gradient(2));
+  const float cosine = gradient(1);
+  const float lateral_m = std::sqrt(offset_m(0) * offset_m(0) + offset_m(2) * offset_m(2));
+  const float per_spread = cosine / wall.spread_m({0.0f, sine, cosine}, offset_m(1));
+  const float per_lateral = lateral_m > 0.0f ? sine / lateral_m : per_spread;
+  const float per_sine = sine > 0.0f ? 1.0f / sine : 0.0f;
+  const Eigen::Vector3f outwards(gradient(0) * per_sine, 0.0f, gradient(2) * per_sine);
+  const Eigen::Vector3f steeper(cosine * outwards(0), -sine, cosine * outwards(2));
+  const Eigen::Vector3f along_wall(by(0), 0.0f, by(2));
+  return (per_spread * steeper.dot(by)) * steeper + per_lateral * (along_wall - outwards.dot(by) * outwards);
+}
 
 int count_bits(std::uint32_t bits) {
   int n = 0;
@@ -43,32 +74,48 @@ const char* invalid_field(const PathTrackerConfig& config) {
   if (!not_negative(config.merge_distance_m)) return "merge_distance_m";
   if (!not_negative(config.merge_speed_mps)) return "merge_speed_mps";
   if (config.max_tracks < 1 || config.max_tracks > static_cast<int>(kMaxTracks)) return "max_tracks";
+  if (!not_negative(config.path_std_growth)) return "path_std_growth";
+  if (!not_negative(config.body_half_height_m)) return "body_half_height_m";
   return nullptr;
 }
 
-Status PathTracker::configure(const PathTrackerConfig& config, const WallConfig& wall,
-                              Span<const float> rx_x_m, const Area& area) {
-  LineLocator line;  // for what it says of receivers and wall
-  if (invalid_field(config) != nullptr || line.configure({wall}, rx_x_m) != Status::kOk)
+template <int kDimension>
+Status PathTracker<kDimension>::configure(const PathTrackerConfig& config, const WallConfig& wall,
+                                          Span<const Vector> rx_m, const Vector& least_m,
+                                          const Vector& most_m, float body_radius_m) {
+  if (invalid_field(config) != nullptr || invalid_field(wall) != nullptr) return Status::kInvalidConfig;
+  if (!possible<kDimension>(rx_m) || !(body_radius_m >= 0.0f && std::isfinite(body_radius_m)))
     return Status::kInvalidConfig;
-  if (invalid_field(area) != nullptr || !(area.min_y_m > 0.0f)) return Status::kInvalidConfig;
+  for (int axis = 0; axis < kDimension; ++axis)
+    if (!(std::isfinite(least_m(axis)) && most_m(axis) > least_m(axis) && std::isfinite(most_m(axis))))
+      return Status::kInvalidConfig;
+  if (!(least_m(1) > 0.0f)) return Status::kInvalidConfig;
   (void)wall_.configure(wall);
   config_ = config;
-  area_ = area;
-  n_receivers_ = rx_x_m.size();
-  std::copy(rx_x_m.begin(), rx_x_m.end(), rx_x_m_.begin());
+  least_m_ = least_m;
+  most_m_ = most_m;
+  if constexpr (kDimension == 3) {
+    const float half_height_m = config.body_half_height_m > 0.0f ? config.body_half_height_m : body_radius_m;
+    body_radius_m_ = body_radius_m;
+    body_m2_ = Vector(body_radius_m, body_radius_m, half_height_m).cwiseAbs2();
+  }
+  n_receivers_ = rx_m.size();
+  std::copy(rx_m.begin(), rx_m.end(), rx_m_.begin());
   reset();
   return Status::kOk;
 }
 
-void PathTracker::reset() {
+template <int kDimension>
+void PathTracker<kDimension>::reset() {
   tracks_.clear();
   next_id_ = 1;
   dropped_births_ = 0;
   dropped_combinations_ = 0;
 }
 
-Status PathTracker::update(Span<const FrameDetection> paths, float dt_s, Span<std::int32_t> owners) {
+template <int kDimension>
+Status PathTracker<kDimension>::update(Span<const FrameDetection> paths, float dt_s,
+                                       Span<std::int32_t> owners) {
   if (n_receivers_ == 0) return Status::kNotConfigured;
   if (owners.size() != paths.size() || !positive(dt_s) || !well_formed(paths)) return Status::kInvalidInput;
   paths_ = paths;
@@ -112,44 +159,37 @@ Status PathTracker::update(Span<const FrameDetection> paths, float dt_s, Span<st
   return dropped_combinations_ == dropped ? Status::kOk : Status::kTruncated;
 }
 
-Status PathTracker::begin(const LineFix& fix) {
+template <int kDimension>
+Status PathTracker<kDimension>::begin(const Vector& position_m, const PositionCovariance& covariance_m2) {
   if (n_receivers_ == 0) return Status::kNotConfigured;
-  for (const TrackState& track : tracks_) {
-    const float dx = track.filter.state()(0) - fix.position.x_m;
-    const float dy = track.filter.state()(2) - fix.position.y_m;
-    if (std::sqrt(dx * dx + dy * dy) < config_.birth_exclusion_m) return Status::kOk;
-  }
+  for (const TrackState& track : tracks_)
+    if ((track.filter.position() - position_m).norm() < config_.birth_exclusion_m) return Status::kOk;
   if (tracks_.size() >= static_cast<std::size_t>(config_.max_tracks)) {
     ++dropped_births_;
     return Status::kTruncated;
   }
-  Filter::Covariance covariance = Filter::Covariance::Zero();
   const float shared = config_.common_path_std_m * config_.common_path_std_m / 4.0f;
-  covariance(0, 0) = fix.covariance_xx_m2 + shared;
-  covariance(0, 2) = covariance(2, 0) = fix.covariance_xy_m2;
-  covariance(2, 2) = fix.covariance_yy_m2 + shared;
-  covariance(1, 1) = covariance(3, 3) = config_.velocity_std_mps * config_.velocity_std_mps;
   TrackState track;
   track.id = next_id_++;
   track.confirmed = config_.confirm_updates <= 1;
-  track.filter = {{fix.position.x_m, 0.0f, fix.position.y_m, 0.0f}, covariance};
+  track.filter = Filter::at(position_m, covariance_m2 + shared * PositionCovariance::Identity(),
+                            Vector::Zero(), config_.velocity_std_mps);
   ECHOFUSE_CHECK(tracks_.try_push_back(track));
   return Status::kOk;
 }
 
-void PathTracker::report(link::Tracks& tracks) const {
+template <int kDimension>
+void PathTracker<kDimension>::report(link::Tracks& tracks) const {
   tracks.tracks.clear();
   for (const TrackState& track : tracks_) {
-    const auto& state = track.filter.state();
-    const auto& covariance = track.filter.covariance();
     const auto seen = track.misses == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
-    ECHOFUSE_CHECK(tracks.tracks.try_push_back(
-        {track.id, track.confirmed ? seen : link::TrackState::kUnconfirmed, track.misses, state(0), state(2),
-         0.0f, state(1), state(3), 0.0f, covariance(0, 0), covariance(0, 2), covariance(2, 2)}));
+    ECHOFUSE_CHECK(tracks.tracks.try_push_back(to_message(
+        track.id, track.confirmed ? seen : link::TrackState::kUnconfirmed, track.misses, track.filter)));
   }
 }
 
-bool PathTracker::well_formed(Span<const FrameDetection> paths) const {
+template <int kDimension>
+bool PathTracker<kDimension>::well_formed(Span<const FrameDetection> paths) const {
   int n = 0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const bool first = i == 0 || paths[i].node_index != paths[i - 1].node_index;
@@ -162,26 +202,27 @@ bool PathTracker::well_formed(Span<const FrameDetection> paths) const {
 }
 
 /// A silent track comes to rest, and none leaves the room through its walls.
-void PathTracker::predict(float dt_s) {
+template <int kDimension>
+void PathTracker<kDimension>::predict(float dt_s) {
   const float fade =
       config_.silent_velocity_time_s > 0.0f ? std::exp(-dt_s / config_.silent_velocity_time_s) : 0.0f;
   for (TrackState& track : tracks_) {
     const bool silent = track.confirmed && track.misses > 0;
     track.filter.predict(dt_s, config_.acceleration_density_m2ps3, silent ? fade : 1.0f);
-    Filter::State state = track.filter.state();
-    const auto hold = [&state](int axis, float low, float high) {
-      if (state(axis) >= low && state(axis) <= high) return;
-      state(axis) = std::clamp(state(axis), low, high);
-      state(axis + 1) = 0.0f;
-    };
-    hold(0, area_.min_x_m, area_.max_x_m);
-    hold(2, area_.min_y_m, area_.max_y_m);
+    typename Filter::State state = track.filter.state();
+    for (int axis = 0; axis < kDimension; ++axis) {
+      float& position = state(2 * axis);
+      if (position >= least_m_(axis) && position <= most_m_(axis)) continue;
+      position = std::clamp(position, least_m_(axis), most_m_(axis));
+      state(2 * axis + 1) = 0.0f;
+    }
     track.filter = {state, track.filter.covariance()};
   }
 }
 
 /// The best combinations go first, as long as their traces are free; a track whose traces went takes its next best.
-void PathTracker::share_out(bool confirmed) {
+template <int kDimension>
+void PathTracker<kDimension>::share_out(bool confirmed) {
   std::array<bool, kMaxTracks> waits{};
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     waits[i] = tracks_[i].confirmed == confirmed;
@@ -203,7 +244,8 @@ void PathTracker::share_out(bool confirmed) {
   }
 }
 
-bool PathTracker::all_free(const Traces& traces) const {
+template <int kDimension>
+bool PathTracker<kDimension>::all_free(const Traces& traces) const {
   for (std::size_t r = 0; r < n_receivers_; ++r)
     if (traces[r] != kNone && owners_[index(r, traces[r])] != 0) return false;
   return true;
@@ -211,14 +253,17 @@ bool PathTracker::all_free(const Traces& traces) const {
 
 /// Of all combinations of at least two receivers' free traces within the gate, by depth first search: a combination so far
 /// is given up when it is no better than the best one, for a further receiver never makes it less distant.
-PathTracker::Choice PathTracker::best_choice(const TrackState& track) {
+template <int kDimension>
+typename PathTracker<kDimension>::Choice PathTracker<kDimension>::best_choice(const TrackState& track) {
   const Prediction prediction = predicted(track);
   const auto& covariance = track.filter.covariance();
   std::array<Partial, kMaxArrayReceivers + 1> partials;
   std::array<int, kMaxArrayReceivers + 1> next{};
-  partials[0].covariance << config_.common_path_std_m * config_.common_path_std_m, 0.0f, 0.0f,  //
-      0.0f, covariance(0, 0), covariance(0, 2),                                                 //
-      0.0f, covariance(2, 0), covariance(2, 2);
+  partials[0].covariance.setZero();
+  partials[0].covariance(0, 0) = prediction.common_m2;
+  for (int row = 0; row < kDimension; ++row)
+    for (int column = 0; column < kDimension; ++column)
+      partials[0].covariance(1 + row, 1 + column) = covariance(2 * row, 2 * column);
   Choice best{kInfinity, {}};
   Traces traces;
   traces.fill(kNone);
@@ -248,16 +293,18 @@ PathTracker::Choice PathTracker::best_choice(const TrackState& track) {
 }
 
 /// False when it can be no combination.
-bool PathTracker::add(const Prediction& prediction, std::size_t receiver, int trace, Partial& partial) const {
+template <int kDimension>
+bool PathTracker<kDimension>::add(const Prediction& prediction, std::size_t receiver, int trace,
+                                  Partial& partial) const {
   if (trace == kNone) {
     partial.distance += config_.missing_cost;
     return partial.present + static_cast<int>(n_receivers_ - receiver) > 2;
   }
   if (owners_[index(receiver, trace)] != 0) return false;
-  const Eigen::Vector2f& gradient = prediction.gradient[receiver];
-  const Eigen::Vector3f shown(1.0f, gradient(0), gradient(1));
-  const Eigen::Vector3f with_shown = partial.covariance * shown;
-  const float variance = shown.dot(with_shown) + config_.path_std_m * config_.path_std_m;
+  typename Partial::State shown;
+  shown << 1.0f, prediction.gradient[receiver];
+  const typename Partial::State with_shown = partial.covariance * shown;
+  const float variance = shown.dot(with_shown) + prediction.own_m2;
   const float innovation =
       paths_[index(receiver, trace)].path_m - prediction.path_m[receiver] - shown.dot(partial.state);
   partial.distance += innovation * innovation / variance;
@@ -267,39 +314,73 @@ bool PathTracker::add(const Prediction& prediction, std::size_t receiver, int tr
   return true;
 }
 
-PathTracker::Prediction PathTracker::predicted(const TrackState& track) const {
-  const Eigen::Vector2f at = track.filter.position();
-  const Point position{at.x(), std::max(at.y(), kMinDepth_m)};
-  const AntennaRay tx = antenna_ray(wall_, position, 0.0f);
+template <int kDimension>
+typename PathTracker<kDimension>::Prediction PathTracker<kDimension>::predicted(
+    const TrackState& track) const {
+  Vector position = track.filter.position();
+  position(1) = std::max(position(1), kMinDepth_m);
+  const Leg tx = leg(position, Vector::Zero());
   Prediction prediction;
   for (std::size_t r = 0; r < n_receivers_; ++r) {
-    const AntennaRay path = tx + antenna_ray(wall_, position, rx_x_m_[r]);
-    prediction.path_m[r] = path.optical_m;
-    prediction.gradient[r] = {path.gradient.x_m, path.gradient.y_m};
+    const Leg rx = leg(position, rx_m_[r]);
+    prediction.path_m[r] = tx.optical_m + rx.optical_m;
+    prediction.gradient[r] = tx.gradient + rx.gradient;
   }
+  if constexpr (kDimension == 3) {
+    for (std::size_t r = 0; r < n_receivers_ && body_radius_m_ > 0.0f; ++r) {
+      Vector& gradient = prediction.gradient[r];
+      const Vector rx_gradient = gradient - tx.gradient;
+      Vector by = body_m2_.cwiseProduct(gradient);
+      const float support_m = std::sqrt(gradient.dot(by));
+      by /= support_m;
+      prediction.path_m[r] += 2.0f * body_radius_m_ - support_m;
+      gradient -=
+          turned(wall_, position, tx.gradient, by) + turned(wall_, position - rx_m_[r], rx_gradient, by);
+    }
+  }
+  float sum_m = 0.0f;
+  for (std::size_t r = 0; r < n_receivers_; ++r) sum_m += prediction.path_m[r];
+  const float beyond_m = std::max(sum_m / static_cast<float>(n_receivers_) - kGrowthBegins_m, 0.0f);
+  const float growth = 1.0f + config_.path_std_growth * beyond_m;
+  const float own_m = growth * config_.path_std_m;
+  const float common_m = growth * config_.common_path_std_m;
+  prediction.own_m2 = own_m * own_m;
+  prediction.common_m2 = common_m * common_m;
   return prediction;
+}
+
+template <int kDimension>
+typename PathTracker<kDimension>::Leg PathTracker<kDimension>::leg(const Vector& position,
+                                                                   const Vector& antenna) const {
+  if constexpr (kDimension == 2) {
+    const AntennaRay ray = antenna_ray(wall_, {position(0), position(1)}, antenna(0));
+    return {ray.optical_m, {ray.gradient.x_m, ray.gradient.y_m}};
+  } else {
+    const AntennaRay3d ray =
+        antenna_ray_3d(wall_, {position(0), position(1), position(2)}, {antenna(0), antenna(1), antenna(2)});
+    return {ray.optical_m, {ray.gradient.x_m, ray.gradient.y_m, ray.gradient.z_m}};
+  }
 }
 
 /// Their mean first, then the contrasts of Helmert: each receiver against the mean of those before. The noises of all of
 /// these are independent, and the common one is in the mean alone.
-void PathTracker::take(TrackState& track, const Traces& traces) const {
+template <int kDimension>
+void PathTracker<kDimension>::take(TrackState& track, const Traces& traces) const {
   const Prediction prediction = predicted(track);
   std::array<float, kMaxArrayReceivers> innovation_m{};
-  std::array<Eigen::Vector2f, kMaxArrayReceivers> gradient;
+  std::array<Vector, kMaxArrayReceivers> gradient;
   std::size_t n = 0;
   for (std::size_t r = 0; r < n_receivers_; ++r) {
     if (traces[r] == kNone) continue;
     innovation_m[n] = paths_[index(r, traces[r])].path_m - prediction.path_m[r];
     gradient[n++] = prediction.gradient[r];
   }
-  const Eigen::Vector2f before = track.filter.position();
-  const float own = config_.path_std_m * config_.path_std_m;
-  const float common = config_.common_path_std_m * config_.common_path_std_m;
+  const Vector before = track.filter.position();
   for (std::size_t row = 0; row < n; ++row) {
     const std::size_t last = row == 0 ? n - 1 : row;
     const auto k = static_cast<float>(row);
     const float scale = 1.0f / std::sqrt(row == 0 ? static_cast<float>(n) : k * (k + 1.0f));
-    Eigen::Vector2f direction = Eigen::Vector2f::Zero();
+    Vector direction = Vector::Zero();
     float innovation = 0.0f;
     for (std::size_t i = 0; i <= last; ++i) {
       const float weight = scale * (row > 0 && i == row ? -k : 1.0f);
@@ -307,13 +388,15 @@ void PathTracker::take(TrackState& track, const Traces& traces) const {
       innovation += weight * innovation_m[i];
     }
     innovation -= direction.dot(track.filter.position() - before);
-    const float variance = own + (row == 0 ? static_cast<float>(n) * common : 0.0f);
+    const float variance =
+        prediction.own_m2 + (row == 0 ? static_cast<float>(n) * prediction.common_m2 : 0.0f);
     take_along(track, direction, innovation, variance, row > 0);
   }
 }
 
-void PathTracker::take_along(TrackState& track, const Eigen::Vector2f& direction, float innovation_m,
-                             float variance_m2, bool cut) const {
+template <int kDimension>
+void PathTracker<kDimension>::take_along(TrackState& track, const Vector& direction, float innovation_m,
+                                         float variance_m2, bool cut) const {
   if (cut) {
     const float most = config_.cut_off * std::sqrt(track.filter.variance_along(direction) + variance_m2);
     innovation_m = std::clamp(innovation_m, -most, most);
@@ -322,11 +405,11 @@ void PathTracker::take_along(TrackState& track, const Eigen::Vector2f& direction
 }
 
 /// The free trace that a confirmed track explains best, along its own path.
-bool PathTracker::take_lone(TrackState& track) {
+template <int kDimension>
+bool PathTracker<kDimension>::take_lone(TrackState& track) {
   if (!track.confirmed || track.lone >= config_.lone_limit) return false;
   const Prediction prediction = predicted(track);
-  const float noise =
-      config_.path_std_m * config_.path_std_m + config_.common_path_std_m * config_.common_path_std_m;
+  const float noise = prediction.own_m2 + prediction.common_m2;
   float least = config_.lone_gate;
   std::size_t best_receiver = 0;
   int best_trace = kNone;
@@ -352,7 +435,8 @@ bool PathTracker::take_lone(TrackState& track) {
 }
 
 /// Confirms it, or says that it is dead.
-bool PathTracker::lives(TrackState& track, float dt_s) const {
+template <int kDimension>
+bool PathTracker<kDimension>::lives(TrackState& track, float dt_s) const {
   const std::uint32_t window = config_.confirm_window == kMaxWindow
                                    ? ~std::uint32_t{0}
                                    : (std::uint32_t{1} << config_.confirm_window) - 1u;
@@ -363,12 +447,15 @@ bool PathTracker::lives(TrackState& track, float dt_s) const {
 }
 
 /// Two tracks of one person.
-bool PathTracker::same(const TrackState& one, const TrackState& other) const {
+template <int kDimension>
+bool PathTracker<kDimension>::same(const TrackState& one, const TrackState& other) const {
   if (!one.confirmed || !other.confirmed) return false;
-  const Filter::State apart = one.filter.state() - other.filter.state();
-  const float distance = std::sqrt(apart(0) * apart(0) + apart(2) * apart(2));
-  const float speed = std::sqrt(apart(1) * apart(1) + apart(3) * apart(3));
+  const float distance = (one.filter.position() - other.filter.position()).norm();
+  const float speed = (one.filter.velocity() - other.filter.velocity()).norm();
   return distance < config_.merge_distance_m && speed < config_.merge_speed_mps;
 }
+
+template class PathTracker<2>;
+template class PathTracker<3>;
 
 }  // namespace echofuse::hub

@@ -1,11 +1,11 @@
-"""Tracks from the paths of traces before a line of antennas: an extended Kalman filter a person.
+"""Tracks from the paths of traces before a plane of antennas: an extended Kalman filter a person.
 
 A handheld's cross-range comes from small differences of paths, and one in ten of them is wrong by
 decimetres. So tracks take part in the pairing: each looks among all combinations of traces for the one that
 its prediction explains (the through-wall paper, section 4, names what goes wrong without: targets at equal
 ranges lose their traces).
 
-The transmitter is the origin, x runs along the antennas, y > 0 is the depth.
+The transmitter is the origin, x runs along the wall, y > 0 is the depth, and in space z points upwards.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.reference.estimation.kalman import ConstantVelocityFilter
-from echofuse.reference.hub.locate.line_locator import path_and_gradient
+from echofuse.reference.hub.locate.taylor_3d import leg
 from echofuse.reference.hub.locate.wall import WallConfig
 from echofuse.reference.hub.track.track_manager import CONFIRMED, SILENT, UNCONFIRMED
 
@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 
 NONE = -1
 MIN_DEPTH_M = 0.02
-POSITION = slice(None, None, 2)  # of the state (x, vx, y, vy)
-VELOCITY = slice(1, None, 2)
+GROWTH_BEGINS_M = 4.0  # of a mean path
+STEP_M = 1e-5  # of a numerical derivative
 
 
 class PathTrackerConfig(Protocol):
@@ -47,6 +47,8 @@ class PathTrackerConfig(Protocol):
     merge_distance_m: float
     merge_speed_mps: float
     max_tracks: int
+    path_std_growth: float
+    body_half_height_m: float
 
 
 @dataclass
@@ -68,15 +70,36 @@ class PathTrack:
             return UNCONFIRMED
         return SILENT if self.misses else CONFIRMED
 
-    def predicted(self, wall: WallConfig, rx_x_m: Array) -> tuple[Array, Array]:
-        """Paths (n,) and their gradients (n, 2) where the track is."""
-        x, y = self.filter.state[POSITION]
-        return path_and_gradient(wall, np.array([x, max(y, MIN_DEPTH_M)]), rx_x_m)
+
+class Prediction(NamedTuple):
+    path_m: Array  # (n,) of each receiver
+    gradient: Array  # (n, d)
+    own_m2: float  # variance of one receiver's path for itself
+    common_m2: float  # of what all share
 
 
 class _Choice(NamedTuple):
     distance: float
     traces: tuple[int, ...]  # one a receiver, NONE where it has none
+
+
+def paths_and_gradients(wall: WallConfig, position_m: Array, rx_m: Array) -> tuple[Array, Array]:
+    """Paths (n,) [m] from the origin by a position (d,) to receivers (n, d), and their gradients (n, d)."""
+    d = len(position_m)
+    place, *antennas = (np.pad(of, (0, 3 - d)) for of in (position_m, np.zeros(d), *rx_m))
+    legs = [leg(wall, True, place, antenna) for antenna in antennas]
+    optical_m, gradient = np.array([r for r, _ in legs]), np.array([g[:d] for _, g in legs])
+    return optical_m[0] + optical_m[1:], gradient[0] + gradient[1:]
+
+
+def paths_by_skin(wall: WallConfig, position_m: Array, rx_m: Array, half_axes_m: Array) -> Array:
+    """Paths (n,) [m] by the nearest of an upright ellipsoid's surface, of a middle and half axes (3,).
+
+    A plane front that travels along g, the sum of both unit vectors, meets the ellipsoid earlier than its
+    middle by its support s(g) = |half axes * g|.
+    """
+    path_m, gradient = paths_and_gradients(wall, position_m, rx_m)
+    return np.asarray(path_m - np.linalg.norm(half_axes_m * gradient, axis=1))
 
 
 def helmert(n: int) -> Array:
@@ -92,9 +115,21 @@ def helmert(n: int) -> Array:
 class PathTracker:
     """State: the tracks. margin: least relative distance of a decision of the last response from flipping."""
 
-    def __init__(self, config: PathTrackerConfig, wall: WallConfig, rx_x_m: Array, area_m: Array) -> None:
-        """rx_x_m (n,): receivers; area_m (4,): least x and y, most x and y of a person's middle [m]."""
-        self.config, self.wall, self.rx_x_m, self.area_m = config, wall, rx_x_m, area_m
+    def __init__(
+        self,
+        config: PathTrackerConfig,
+        wall: WallConfig,
+        rx_m: Array,
+        area_m: Array,
+        body_radius_m: float = 0.0,
+    ) -> None:
+        """rx_m (n, d): receivers; area_m (2 d,): least x, y, (z), then most of a person's middle [m].
+
+        body_radius_m: in space, half the width of a body; paths hold twice as much more than was measured.
+        """
+        self.config, self.wall, self.rx_m, self.area_m = config, wall, rx_m, area_m
+        self.dimension = rx_m.shape[1]
+        self.body_radius_m = body_radius_m if self.dimension == 3 else 0.0
         self.tracks: list[PathTrack] = []
         self.next_id = 1
         self.dropped_births = 0
@@ -125,26 +160,44 @@ class PathTracker:
         return owners
 
     def begin(self, position_m: Array, covariance_m2: Array) -> bool:
-        """Begin a track at a fix (2,) that no track explains; False when there was no room for it."""
+        """Begin a track at a fix (d,) that no track explains; False when there was no room for it."""
         c = self.config
         for track in self.tracks:
-            distance = float(np.linalg.norm(track.filter.state[POSITION] - position_m))
+            distance = float(np.linalg.norm(track.filter.position - position_m))
             self._decide(distance, c.birth_exclusion_m)
             if distance < c.birth_exclusion_m:
                 return True
         if len(self.tracks) >= c.max_tracks:
             self.dropped_births += 1
             return False
-        covariance: Array = np.kron(np.eye(2), np.diag([0.0, c.velocity_std_mps**2])).astype(np.float64)
-        covariance[POSITION, POSITION] = covariance_m2 + c.common_path_std_m**2 / 4.0 * np.eye(2)
-        state = np.array([position_m[0], 0.0, position_m[1], 0.0])
-        confirmed = c.confirm_updates <= 1
-        self.tracks.append(PathTrack(self.next_id, ConstantVelocityFilter(state, covariance), confirmed))
+        covariance = covariance_m2 + c.common_path_std_m**2 / 4.0 * np.eye(self.dimension)
+        at_rest = np.zeros(self.dimension)
+        begun = ConstantVelocityFilter.at(position_m, covariance, at_rest, c.velocity_std_mps)
+        self.tracks.append(PathTrack(self.next_id, begun, confirmed=c.confirm_updates <= 1))
         self.next_id += 1
         return True
 
     def _decide(self, value: float, limit: float) -> None:
         self.margin = min(self.margin, abs(value / limit - 1.0)) if limit > 0.0 else self.margin
+
+    def predicted(self, track: PathTrack) -> Prediction:
+        """Paths where a track is."""
+        c, a = self.config, self.body_radius_m
+        position = track.filter.position.copy()
+        position[1] = max(position[1], MIN_DEPTH_M)
+        path_m, gradient = paths_and_gradients(self.wall, position, self.rx_m)
+        if a > 0.0:
+            half_axes_m = np.array([a, a, c.body_half_height_m if c.body_half_height_m > 0.0 else a])
+
+            def by_skin(place: Array) -> Array:
+                return paths_by_skin(self.wall, place, self.rx_m, half_axes_m)
+
+            path_m = by_skin(position) + 2.0 * a
+            gradient = np.column_stack(
+                [(by_skin(position + h) - by_skin(position - h)) / (2.0 * STEP_M) for h in STEP_M * np.eye(3)]
+            )
+        growth = 1.0 + c.path_std_growth * max(float(np.mean(path_m)) - GROWTH_BEGINS_M, 0.0)
+        return Prediction(path_m, gradient, (growth * c.path_std_m) ** 2, (growth * c.common_path_std_m) ** 2)
 
     def _predict(self, dt_s: float) -> None:
         """A silent track comes to rest, and none leaves the room through its walls."""
@@ -153,8 +206,8 @@ class PathTracker:
         for track in self.tracks:
             silent = track.state == SILENT
             track.filter.predict(dt_s, c.acceleration_density_m2ps3, float(fade) if silent else 1.0)
-            for axis in range(2):
-                low, high = self.area_m[axis], self.area_m[axis + 2]
+            for axis in range(self.dimension):
+                low, high = self.area_m[axis], self.area_m[axis + self.dimension]
                 if not low <= track.filter.state[2 * axis] <= high:
                     track.filter.state[2 * axis] = np.clip(track.filter.state[2 * axis], low, high)
                     track.filter.state[2 * axis + 1] = 0.0
@@ -182,44 +235,42 @@ class PathTracker:
         self, track: PathTrack, paths_m: list[Array], owners: list[NDArray[np.int64]]
     ) -> Iterator[_Choice]:
         """All within the gate of at least two receivers' free traces."""
-        predicted, gradient = track.predicted(self.wall, self.rx_x_m)
-        position = track.filter.covariance[POSITION, POSITION]
-        covariance = gradient @ position @ gradient.T + self._noise(len(paths_m))
+        predicted = self.predicted(track)
+        of_position = predicted.gradient @ track.filter.position_covariance @ predicted.gradient.T
+        noise = predicted.own_m2 * np.eye(len(paths_m)) + predicted.common_m2
+        covariance = of_position + noise
         free = [[*np.flatnonzero(owner == 0), NONE] for owner in owners]
         for traces in np.array(np.meshgrid(*free, indexing="ij")).reshape(len(free), -1).T:
             present = np.flatnonzero(traces != NONE)
             if len(present) < 2:
                 continue
-            innovation = np.array([paths_m[r][traces[r]] for r in present]) - predicted[present]
+            innovation = np.array([paths_m[r][traces[r]] for r in present]) - predicted.path_m[present]
             distance = float(innovation @ np.linalg.solve(covariance[np.ix_(present, present)], innovation))
             distance += self.config.missing_cost * (len(paths_m) - len(present))
             self._decide(distance, self.config.gate)
             if distance < self.config.gate:
                 yield _Choice(distance, tuple(int(k) for k in traces))
 
-    def _noise(self, n: int) -> Array:
-        c = self.config
-        return np.asarray(c.path_std_m**2 * np.eye(n) + c.common_path_std_m**2 * np.ones((n, n)))
-
     def _take(self, track: PathTrack, paths_m: list[Array], traces: tuple[int, ...]) -> None:
         """The mean of the paths, then what differs between them, whose noises are independent."""
         present = [r for r, k in enumerate(traces) if k != NONE]
         measured = np.array([paths_m[r][traces[r]] for r in present])
-        predicted, gradient = (of[present] for of in track.predicted(self.wall, self.rx_x_m))
-        before = track.filter.state[POSITION].copy()
-        n, c = len(present), self.config
+        predicted = self.predicted(track)
+        ahead = measured - predicted.path_m[present]
+        before = track.filter.position.copy()
+        n = len(present)
         for which, row in enumerate(helmert(n)):
-            direction = row @ gradient
-            moved = track.filter.state[POSITION] - before
-            innovation = float(row @ (measured - predicted) - direction @ moved)
-            variance = c.path_std_m**2 + (n * c.common_path_std_m**2 if which == 0 else 0.0)
+            direction = row @ predicted.gradient[present]
+            moved = track.filter.position - before
+            innovation = float(row @ ahead - direction @ moved)
+            variance = predicted.own_m2 + (n * predicted.common_m2 if which == 0 else 0.0)
             self._take_along(track, direction, innovation, variance, cut=which > 0)
 
     def _take_along(
         self, track: PathTrack, direction: Array, innovation: float, variance: float, *, cut: bool
     ) -> None:
         if cut:
-            position = track.filter.covariance[POSITION, POSITION]
+            position = track.filter.position_covariance
             most = self.config.cut_off * float(np.sqrt(direction @ position @ direction + variance))
             innovation = min(max(innovation, -most), most)
         track.filter.update_along(direction, innovation, variance)
@@ -229,9 +280,9 @@ class PathTracker:
         c = self.config
         if not track.confirmed or track.lone >= c.lone_limit:
             return False
-        predicted, gradient = track.predicted(self.wall, self.rx_x_m)
-        position = track.filter.covariance[POSITION, POSITION]
-        noise = float(self._noise(1)[0, 0])
+        predicted, gradient, own_m2, common_m2 = self.predicted(track)
+        position = track.filter.position_covariance
+        noise = own_m2 + common_m2
         found = []
         for r, paths in enumerate(paths_m):
             variance = float(gradient[r] @ position @ gradient[r]) + noise
@@ -268,8 +319,8 @@ class PathTracker:
     def _same(self, one: PathTrack, other: PathTrack) -> bool:
         if not (one.confirmed and other.confirmed):
             return False
-        apart = one.filter.state - other.filter.state
-        distance, speed = (float(np.linalg.norm(apart[part])) for part in (POSITION, VELOCITY))
+        distance = float(np.linalg.norm(one.filter.position - other.filter.position))
+        speed = float(np.linalg.norm(one.filter.velocity - other.filter.velocity))
         self._decide(distance, self.config.merge_distance_m)
         self._decide(speed, self.config.merge_speed_mps)
         return distance < self.config.merge_distance_m and speed < self.config.merge_speed_mps
