@@ -8,6 +8,7 @@
 #include "config_binder.hpp"
 #include "echofuse/hub/locate/site.hpp"
 #include "echofuse/hub/measure/frame_assembler.hpp"
+#include "echofuse/hub/path_hub.hpp"
 #include "hub.hpp"
 #include "taps.hpp"
 #include "tracks.hpp"
@@ -28,33 +29,54 @@ inline void add_report_counters(const hub::FrameAssemblerCounters& reports, py::
   by_name["slow"] = reports.slow;
 }
 
-/// set_nodes and set_area of a hub's configuration.
+/// What all hubs behind a wall count, by name.
+inline py::dict path_hub_counters(const hub::PathHubCounters& c) {
+  py::dict by_name;
+  add_report_counters(c.reports, by_name);
+  by_name["couples"] = c.couples;
+  by_name["unlocated"] = c.unlocated;
+  by_name["outside_area"] = c.outside_area;
+  by_name["dropped_points"] = c.dropped_points;
+  by_name["dropped_births"] = c.dropped_births;
+  by_name["dropped_combinations"] = c.dropped_combinations;
+  by_name["clock_faults"] = c.clock_faults;
+  return by_name;
+}
+
+/// set_nodes of a hub's configuration. point_of: makes a position of its coordinates.
+template <std::size_t kDimension, class Config, class PointOf>
+void bind_nodes(py::class_<Config>& config, PointOf point_of) {
+  config.def(
+      "set_nodes",
+      [point_of](Config& self, const std::vector<std::int32_t>& ids, const FloatArray& tx,
+                 const FloatArray& rx) {
+        const auto tx_rows = as_span_of_rows(tx, kDimension, "tx_m");
+        const auto rx_rows = as_span_of_rows(rx, kDimension, "rx_m");
+        if (tx_rows.size() != kDimension * ids.size() || rx_rows.size() != kDimension * ids.size())
+          throw py::value_error("node_ids, tx_m and rx_m must have one row a node");
+        const std::size_t most = self.nodes.size();
+        if (ids.size() > most) throw py::value_error("at most " + std::to_string(most) + " nodes");
+        self.nodes = {};
+        self.n_nodes = static_cast<int>(ids.size());
+        for (std::size_t i = 0; i < ids.size(); ++i)
+          self.nodes[i] = {ids[i], point_of(tx_rows.data() + kDimension * i),
+                           point_of(rx_rows.data() + kDimension * i)};
+      },
+      py::arg("node_ids"), py::arg("tx_m").noconvert(), py::arg("rx_m").noconvert(),
+      kDimension == 2 ? "Sets nodes and n_nodes from positions (n, 2) [m]."
+                      : "Sets nodes and n_nodes from positions (n, 3) [m].");
+}
+
+/// set_nodes and set_area of a hub in the plane.
 template <class Config>
 void bind_site(py::class_<Config>& config) {
-  config
-      .def(
-          "set_nodes",
-          [](Config& self, const std::vector<std::int32_t>& ids, const FloatArray& tx, const FloatArray& rx) {
-            const auto tx_rows = as_span_of_rows(tx, 2, "tx_m");
-            const auto rx_rows = as_span_of_rows(rx, 2, "rx_m");
-            if (tx_rows.size() != 2 * ids.size() || rx_rows.size() != 2 * ids.size())
-              throw py::value_error("node_ids, tx_m and rx_m must have one row a node");
-            const std::size_t most = self.nodes.size();
-            if (ids.size() > most) throw py::value_error("at most " + std::to_string(most) + " nodes");
-            self.nodes = {};
-            self.n_nodes = static_cast<int>(ids.size());
-            for (std::size_t i = 0; i < ids.size(); ++i)
-              self.nodes[i] = {
-                  ids[i], {tx_rows[2 * i], tx_rows[2 * i + 1]}, {rx_rows[2 * i], rx_rows[2 * i + 1]}};
-          },
-          py::arg("node_ids"), py::arg("tx_m").noconvert(), py::arg("rx_m").noconvert(),
-          "Sets nodes and n_nodes from positions (n, 2) [m].")
-      .def(
-          "set_area",
-          [](Config& self, float min_x_m, float min_y_m, float max_x_m, float max_y_m) {
-            self.area = {min_x_m, min_y_m, max_x_m, max_y_m};
-          },
-          py::arg("min_x_m"), py::arg("min_y_m"), py::arg("max_x_m"), py::arg("max_y_m"));
+  bind_nodes<2>(config, [](const float* at) { return hub::Point{at[0], at[1]}; });
+  config.def(
+      "set_area",
+      [](Config& self, float min_x_m, float min_y_m, float max_x_m, float max_y_m) {
+        self.area = {min_x_m, min_y_m, max_x_m, max_y_m};
+      },
+      py::arg("min_x_m"), py::arg("min_y_m"), py::arg("max_x_m"), py::arg("max_y_m"));
 }
 
 template <class Hub>

@@ -9,19 +9,7 @@ using hub::PathTrackerConfig;
 using hub::ThroughWallHub;
 using hub::ThroughWallHubConfig;
 
-py::dict counters(const ThroughWallHub& self) {
-  const hub::ThroughWallHubCounters c = self.counters();
-  py::dict by_name;
-  add_report_counters(c.reports, by_name);
-  by_name["couples"] = c.couples;
-  by_name["unlocated"] = c.unlocated;
-  by_name["outside_area"] = c.outside_area;
-  by_name["dropped_points"] = c.dropped_points;
-  by_name["dropped_births"] = c.dropped_births;
-  by_name["dropped_combinations"] = c.dropped_combinations;
-  by_name["clock_faults"] = c.clock_faults;
-  return by_name;
-}
+py::dict counters(const ThroughWallHub& self) { return path_hub_counters(self.counters()); }
 
 template <int kDimension>
 Eigen::Matrix<float, kDimension, 1> as_vector(const FloatArray& array, const char* name) {

@@ -16,7 +16,8 @@ from echofuse.conformance.comparison import Scoreboard, as_reference, to_float64
 from echofuse.conformance.hub_reference import covariances, reference_report
 from echofuse.conformance.target import ConformanceTarget, HubAnswer
 from echofuse.conformance.through_wall_hub_inputs import ThroughWallHubInput
-from echofuse.reference.hub.through_wall import ThroughWallHub, ThroughWallHubFrame
+from echofuse.reference.hub.path_hub import PathHubFrame
+from echofuse.reference.hub.through_wall import ThroughWallHub
 
 THROUGH_WALL_HUB_TAPS = ("frame", "associated", "points", "tracks")
 DEADLINE_US = 73_000  # after an instant: its frame is overdue, and the next instant not yet there
@@ -57,7 +58,7 @@ class _Frame:
     def __init__(self, board: Scoreboard, choice: str, where: str) -> None:
         self.board, self.choice, self.where = board, choice, where
 
-    def compare(self, answer: HubAnswer | None, frame: ThroughWallHubFrame | None) -> bool:
+    def compare(self, answer: HubAnswer | None, frame: PathHubFrame | None) -> bool:
         """Whether the next frame may be compared as well."""
         if answer is None and frame is None:
             return True
