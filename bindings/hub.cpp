@@ -340,6 +340,7 @@ void bind_hub(py::module_& m) {
   bind_hub_track(m);
   bind_hub_pipeline(m);
   bind_hub_through_wall(m);
+  bind_hub_through_wall_3d(m);
 }
 
 }  // namespace echofuse::bindings

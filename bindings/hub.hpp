@@ -9,6 +9,7 @@ void bind_hub_array(py::module_& m);
 void bind_hub_line(py::module_& m);
 void bind_hub_pipeline(py::module_& m);
 void bind_hub_through_wall(py::module_& m);
+void bind_hub_through_wall_3d(py::module_& m);
 
 /// ValueError when the arrays differ or hold more than one report can.
 inline void fill_detections(link::Detections& report, const FloatArray& delay, const FloatArray& weight) {

@@ -216,6 +216,9 @@ void bind_link(py::module_& m) {
   m.def(
       "through_wall_hub_registers", [] { return register_names(hub::through_wall_registers()); },
       "Names of a hub's configuration on the link; '#' stands for the index of a node.");
+  m.def(
+      "through_wall_3d_hub_registers", [] { return register_names(hub::through_wall_3d_registers()); },
+      "Names of a hub's configuration on the link; '#' stands for the index of a node.");
 }
 
 }  // namespace echofuse::bindings

@@ -15,6 +15,7 @@ __all__: list[str] = [
     "AlignmentMethod",
     "Area",
     "AssociationRule",
+    "Box",
     "CfarConfig",
     "CfarDetector",
     "CfarMethod",
@@ -33,6 +34,7 @@ __all__: list[str] = [
     "DirectPathConfig",
     "DirectPathSearch",
     "DirectPathSearcher",
+    "EdgeRule",
     "EllipseConfig",
     "EllipseFix",
     "EllipseLeastSquares",
@@ -61,10 +63,12 @@ __all__: list[str] = [
     "MixtureConfig",
     "MixtureFitter",
     "NodeSite",
+    "NodeSite3d",
     "NoiseFloor",
     "NoiseFloorConfig",
     "PairingRule",
     "PathTracker",
+    "PathTracker3d",
     "PathTrackerConfig",
     "Pcg32",
     "PeakInitialisation",
@@ -75,6 +79,7 @@ __all__: list[str] = [
     "Planar3dMethod",
     "Planar3dStatus",
     "Point",
+    "Point3",
     "PointClusterConfig",
     "PointClusters",
     "PulseIntegrator",
@@ -97,6 +102,7 @@ __all__: list[str] = [
     "SensorRadarNodeConfig",
     "Status",
     "TAPS",
+    "THROUGH_WALL_3D_HUB_BYTES",
     "THROUGH_WALL_HUB_BYTES",
     "THROUGH_WALL_NODE_BYTES",
     "TargetTraceConfig",
@@ -106,6 +112,8 @@ __all__: list[str] = [
     "Taylor3dFix",
     "Taylor3dStart",
     "Taylor3dStatus",
+    "ThroughWall3dHub",
+    "ThroughWall3dHubConfig",
     "ThroughWallHub",
     "ThroughWallHubConfig",
     "ThroughWallNode",
@@ -151,6 +159,7 @@ __all__: list[str] = [
     "snr_on_ellipse",
     "sum_on_cassini_m",
     "systematic_resample",
+    "through_wall_3d_hub_registers",
     "through_wall_hub_registers",
     "through_wall_node_registers",
     "time_of_arrival_s",
@@ -1810,6 +1819,41 @@ class TargetTracer:
         (status, traces): decisions (n_samples,); traces is structured.
         """
 
+class EdgeRule:
+    """
+    What the beginning of an echo is.
+
+    Members:
+
+      fraction : where the envelope first exceeds a fraction of its largest value
+
+      contrast : where its mean behind exceeds that before it the most
+    """
+
+    __members__: typing.ClassVar[dict[str, EdgeRule]]
+    contrast: typing.ClassVar[EdgeRule]
+    fraction: typing.ClassVar[EdgeRule]
+    @typing.overload
+    def __eq__(self, other: EdgeRule) -> bool: ...
+    @typing.overload
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> int: ...
+    def __hash__(self) -> int: ...
+    def __index__(self) -> int: ...
+    def __init__(self, value: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __int__(self) -> int: ...
+    @typing.overload
+    def __ne__(self, other: EdgeRule) -> bool: ...
+    @typing.overload
+    def __ne__(self, other: typing.Any) -> bool: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, state: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __str__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
 class LeadingEdgeConfig:
     """
     Where an echo begins.
@@ -1825,7 +1869,13 @@ class LeadingEdgeConfig:
     def __deepcopy__(self, memo: typing.Any) -> LeadingEdgeConfig: ...
     def __eq__(self, other: typing.Any) -> bool: ...
     def __init__(
-        self, *, fraction: float = 0.5, before_samples: int = 4, after_samples: int = 13
+        self,
+        *,
+        rule: EdgeRule = ...,
+        fraction: float = 0.5,
+        mean_samples: int = 10,
+        before_samples: int = 4,
+        after_samples: int = 13,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -1849,10 +1899,24 @@ class LeadingEdgeConfig:
     @property
     def fraction(self) -> float:
         """
-        of the window's largest envelope, in (0, 1)
+        fraction: of the window's largest envelope, in (0, 1)
         """
     @fraction.setter
     def fraction(self, value: float) -> None: ...
+    @property
+    def mean_samples(self) -> int:
+        """
+        [sample] contrast: of either mean, 1 to 1000
+        """
+    @mean_samples.setter
+    def mean_samples(self, value: int) -> None: ...
+    @property
+    def rule(self) -> EdgeRule:
+        """
+        what the beginning of an echo is
+        """
+    @rule.setter
+    def rule(self, value: EdgeRule) -> None: ...
 
 class LeadingEdge:
     """
@@ -4394,6 +4458,8 @@ class PathTrackerConfig:
         merge_distance_m: float = 0.3,
         merge_speed_mps: float = 0.6,
         max_tracks: int = 10,
+        path_std_growth: float = 0.0,
+        body_half_height_m: float = 0.0,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def invalid_field(self) -> str | None:
@@ -4414,6 +4480,13 @@ class PathTrackerConfig:
         """
     @birth_exclusion_m.setter
     def birth_exclusion_m(self, value: float) -> None: ...
+    @property
+    def body_half_height_m(self) -> float:
+        """
+        [m] in space, >= 0; 0: a ball
+        """
+    @body_half_height_m.setter
+    def body_half_height_m(self, value: float) -> None: ...
     @property
     def common_path_std_m(self) -> float:
         """
@@ -4485,6 +4558,13 @@ class PathTrackerConfig:
     @missing_cost.setter
     def missing_cost(self, value: float) -> None: ...
     @property
+    def path_std_growth(self) -> float:
+        """
+        [1/m] of both path deviations beyond 4 m, >= 0
+        """
+    @path_std_growth.setter
+    def path_std_growth(self, value: float) -> None: ...
+    @property
     def path_std_m(self) -> float:
         """
         [m] of one receiver's path for itself, > 0
@@ -4515,14 +4595,63 @@ class PathTrackerConfig:
 
 class PathTracker:
     def __init__(self) -> None: ...
-    def begin(self, fix: LineFix) -> Status: ...
+    def begin(
+        self,
+        position_m: numpy.typing.NDArray[numpy.float32],
+        covariance_m2: numpy.typing.NDArray[numpy.float32],
+    ) -> Status:
+        """
+        At a fix (d,) [m] of covariance (d, d) [m^2].
+        """
     def configure(
         self,
         config: PathTrackerConfig,
         wall: WallConfig,
-        rx_x_m: numpy.typing.NDArray[numpy.float32],
-        area: Area,
-    ) -> Status: ...
+        rx_m: numpy.typing.NDArray[numpy.float32],
+        least_m: numpy.typing.NDArray[numpy.float32],
+        most_m: numpy.typing.NDArray[numpy.float32],
+        body_radius_m: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> Status:
+        """
+        rx_m (n, d) from the transmitter, corners least_m, most_m (d,) of where people can be [m].
+        """
+    def dropped_births(self) -> int: ...
+    def reset(self) -> None: ...
+    def tracks(self) -> numpy.typing.NDArray[numpy.void]:
+        """
+        Structured array of Track.
+        """
+    def update(
+        self,
+        paths_m: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float32]],
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[Status, numpy.typing.NDArray[numpy.int32]]:
+        """
+        (status, owners): paths_m is a list of one array a receiver (n,) [m]; owners is the id of the track that took each, one after the other, 0 if none did.
+        """
+
+class PathTracker3d:
+    def __init__(self) -> None: ...
+    def begin(
+        self,
+        position_m: numpy.typing.NDArray[numpy.float32],
+        covariance_m2: numpy.typing.NDArray[numpy.float32],
+    ) -> Status:
+        """
+        At a fix (d,) [m] of covariance (d, d) [m^2].
+        """
+    def configure(
+        self,
+        config: PathTrackerConfig,
+        wall: WallConfig,
+        rx_m: numpy.typing.NDArray[numpy.float32],
+        least_m: numpy.typing.NDArray[numpy.float32],
+        most_m: numpy.typing.NDArray[numpy.float32],
+        body_radius_m: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> Status:
+        """
+        rx_m (n, d) from the transmitter, corners least_m, most_m (d,) of where people can be [m].
+        """
     def dropped_births(self) -> int: ...
     def reset(self) -> None: ...
     def tracks(self) -> numpy.typing.NDArray[numpy.void]:
@@ -4642,6 +4771,306 @@ class ThroughWallHub:
     """
     def __init__(self) -> None: ...
     def configure(self, config: ThroughWallHubConfig) -> Status: ...
+    def counters(self) -> dict:
+        """
+        What happened since configure(), by name.
+        """
+    def poll(self, now_us: typing.SupportsInt | typing.SupportsIndex) -> tuple:
+        """
+        (status, None or (time_us, frame, tracks)); call until None. tracks is a structured array of Track.
+        """
+    def poll_with_taps(
+        self, now_us: typing.SupportsInt | typing.SupportsIndex
+    ) -> tuple[typing.Any, typing.Any, dict]:
+        """
+        (status, None or (time_us, frame, tracks), taps by name, each (n, columns)).
+        """
+    def receive(
+        self,
+        node_id: typing.SupportsInt | typing.SupportsIndex,
+        frame: typing.SupportsInt | typing.SupportsIndex,
+        delay_s: numpy.typing.NDArray[numpy.float32],
+        weight: numpy.typing.NDArray[numpy.float32],
+        now_us: typing.SupportsInt | typing.SupportsIndex,
+        time_us: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> Status:
+        """
+        One node's report; frame counts the node's scans, time_us is the scan's by the node's clock (0: not known).
+        """
+    def reset(self) -> None: ...
+
+class Point3:
+    """
+    A position in space.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> Point3: ...
+    def __deepcopy__(self, memo: typing.Any) -> Point3: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(self, *, x_m: float = 0.0, y_m: float = 0.0, z_m: float = 0.0) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def x_m(self) -> float:
+        """
+        [m]
+        """
+    @x_m.setter
+    def x_m(self, value: float) -> None: ...
+    @property
+    def y_m(self) -> float:
+        """
+        [m]
+        """
+    @y_m.setter
+    def y_m(self, value: float) -> None: ...
+    @property
+    def z_m(self) -> float:
+        """
+        [m]
+        """
+    @z_m.setter
+    def z_m(self, value: float) -> None: ...
+
+class Box:
+    """
+    A room along the axes, edges included.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> Box: ...
+    def __deepcopy__(self, memo: typing.Any) -> Box: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        min_x_m: float = 0.0,
+        min_y_m: float = 0.0,
+        min_z_m: float = 0.0,
+        max_x_m: float = 0.0,
+        max_y_m: float = 0.0,
+        max_z_m: float = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def max_x_m(self) -> float:
+        """
+        [m]
+        """
+    @max_x_m.setter
+    def max_x_m(self, value: float) -> None: ...
+    @property
+    def max_y_m(self) -> float:
+        """
+        [m]
+        """
+    @max_y_m.setter
+    def max_y_m(self, value: float) -> None: ...
+    @property
+    def max_z_m(self) -> float:
+        """
+        [m]
+        """
+    @max_z_m.setter
+    def max_z_m(self, value: float) -> None: ...
+    @property
+    def min_x_m(self) -> float:
+        """
+        [m]
+        """
+    @min_x_m.setter
+    def min_x_m(self, value: float) -> None: ...
+    @property
+    def min_y_m(self) -> float:
+        """
+        [m]
+        """
+    @min_y_m.setter
+    def min_y_m(self, value: float) -> None: ...
+    @property
+    def min_z_m(self) -> float:
+        """
+        [m]
+        """
+    @min_z_m.setter
+    def min_z_m(self, value: float) -> None: ...
+
+class NodeSite3d:
+    """
+    Transmitter and receiver of one node.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    node_id: int
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> NodeSite3d: ...
+    def __deepcopy__(self, memo: typing.Any) -> NodeSite3d: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(self, *, node_id: int = 0, tx: Point3 = ..., rx: Point3 = ...) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    @property
+    def rx(self) -> Point3:
+        """
+        [m]
+        """
+    @rx.setter
+    def rx(self, value: Point3) -> None: ...
+    @property
+    def tx(self) -> Point3:
+        """
+        [m]
+        """
+    @tx.setter
+    def tx(self, value: Point3) -> None: ...
+
+class ThroughWall3dHubConfig:
+    """
+    The hub of the pipeline through_wall_3d.
+    """
+
+    __hash__: typing.ClassVar[None]  # type: ignore[assignment]
+    frame_assembler: FrameAssemblerConfig
+    path_tracker: PathTrackerConfig
+    taylor_3d: Taylor3dConfig
+    trace_pairing: TracePairingConfig
+    tracks: TrackManagerConfig
+    @staticmethod
+    def fields() -> tuple[str, ...]:
+        """
+        The names of all fields, in order.
+        """
+    def __copy__(self) -> ThroughWall3dHubConfig: ...
+    def __deepcopy__(self, memo: typing.Any) -> ThroughWall3dHubConfig: ...
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __init__(
+        self,
+        *,
+        nodes: collections.abc.Sequence[NodeSite3d] = ...,
+        n_nodes: int = 4,
+        area: Box = ...,
+        frame_period_s: float = 0.074,
+        body_radius_m: float = 0.21,
+        track_aided: bool = True,
+        frame_assembler: FrameAssemblerConfig = ...,
+        trace_pairing: TracePairingConfig = ...,
+        range_difference_m: float = 0.3,
+        taylor_3d: Taylor3dConfig = ...,
+        path_std_m: float = 0.06,
+        path_tracker: PathTrackerConfig = ...,
+        tracks: TrackManagerConfig = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def invalid_field(self) -> str | None:
+        """
+        Name of the first field with an impossible value, or None.
+        """
+    def set_area(
+        self,
+        min_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        min_y_m: typing.SupportsFloat | typing.SupportsIndex,
+        min_z_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_x_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_y_m: typing.SupportsFloat | typing.SupportsIndex,
+        max_z_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def set_nodes(
+        self,
+        node_ids: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        tx_m: numpy.typing.NDArray[numpy.float32],
+        rx_m: numpy.typing.NDArray[numpy.float32],
+    ) -> None:
+        """
+        Sets nodes and n_nodes from positions (n, 3) [m].
+        """
+    @property
+    def area(self) -> Box:
+        """
+        the room behind the wall
+        """
+    @area.setter
+    def area(self, value: Box) -> None: ...
+    @property
+    def body_radius_m(self) -> float:
+        """
+        [m] from an echo's beginning to a person's middle, >= 0
+        """
+    @body_radius_m.setter
+    def body_radius_m(self, value: float) -> None: ...
+    @property
+    def frame_period_s(self) -> float:
+        """
+        [s] taken for the first frame, > 0
+        """
+    @frame_period_s.setter
+    def frame_period_s(self, value: float) -> None: ...
+    @property
+    def n_nodes(self) -> int:
+        """
+        4, a cross with their one transmitter midway
+        """
+    @n_nodes.setter
+    def n_nodes(self, value: int) -> None: ...
+    @property
+    def nodes(self) -> collections.abc.Sequence[NodeSite3d]:
+        """
+        receivers at -d and d along x, then at -d and d up
+        """
+    @nodes.setter
+    def nodes(self, value: collections.abc.Sequence[NodeSite3d]) -> None: ...
+    @property
+    def path_std_m(self) -> float:
+        """
+        [m] of the paths that locate a target
+        """
+    @path_std_m.setter
+    def path_std_m(self, value: float) -> None: ...
+    @property
+    def range_difference_m(self) -> float:
+        """
+        [m] at most, of both axes' distances, > 0
+        """
+    @range_difference_m.setter
+    def range_difference_m(self, value: float) -> None: ...
+    @property
+    def track_aided(self) -> bool:
+        """
+        tracks take part in the pairing
+        """
+    @track_aided.setter
+    def track_aided(self, value: bool) -> None: ...
+
+class ThroughWall3dHub:
+    """
+    The nodes' reports in, tracks out.
+    """
+    def __init__(self) -> None: ...
+    def configure(self, config: ThroughWall3dHubConfig) -> Status: ...
     def counters(self) -> dict:
         """
         What happened since configure(), by name.
@@ -4852,6 +5281,11 @@ def systematic_resample(
     (status, indices (n_out,)).
     """
 
+def through_wall_3d_hub_registers() -> list[str]:
+    """
+    Names of a hub's configuration on the link; '#' stands for the index of a node.
+    """
+
 def through_wall_hub_registers() -> list[str]:
     """
     Names of a hub's configuration on the link; '#' stands for the index of a node.
@@ -4934,5 +5368,6 @@ TAPS: dict = {
     41: ("points", 5),
     42: ("tracks", 9),
 }
-THROUGH_WALL_HUB_BYTES: int = 25024
-THROUGH_WALL_NODE_BYTES: int = 57920
+THROUGH_WALL_3D_HUB_BYTES: int = 36536
+THROUGH_WALL_HUB_BYTES: int = 24776
+THROUGH_WALL_NODE_BYTES: int = 49216

@@ -202,3 +202,4 @@ def test_every_member_of_a_configuration_is_a_register() -> None:
     assert set(_core.through_wall_node_registers()) == members(_core.ThroughWallNodeConfig()) - {"node_id"}
     assert set(_core.hub_registers()) == members(_core.SensorRadarHubConfig())
     assert set(_core.through_wall_hub_registers()) == members(_core.ThroughWallHubConfig())
+    assert set(_core.through_wall_3d_hub_registers()) == members(_core.ThroughWall3dHubConfig())

@@ -6,22 +6,26 @@
 
 #include "echofuse/hub/hub.hpp"
 #include "echofuse/hub/through_wall.hpp"
+#include "echofuse/hub/through_wall_3d.hpp"
 
 namespace echofuse::hub {
 namespace {
 
-/// A member of NodeSite, in each of a configuration's nodes.
+template <class Config>
+using Node = typename decltype(Config::nodes)::value_type;
+
+/// A member of a node, in each of a configuration's nodes.
 template <class Config>
 constexpr link::RegisterField of_each_node(link::RegisterField field) {
   field.offset = static_cast<std::uint16_t>(field.offset + offsetof(Config, nodes));
   field.repeat = static_cast<std::uint8_t>(std::tuple_size_v<decltype(Config::nodes)>);
-  field.stride = sizeof(NodeSite);
+  field.stride = sizeof(Node<Config>);
   return field;
 }
 
 // What stands in more than one table.
 #define NODE_FIELD(Config, member) \
-  of_each_node<Config>(ECHOFUSE_REGISTER_AS(NodeSite, member, "nodes.#." #member))
+  of_each_node<Config>(ECHOFUSE_REGISTER_AS(Node<Config>, member, "nodes.#." #member))
 #define SITE_FIELDS(Config)                                                                           \
   FIELD(n_nodes), FIELD(area.min_x_m), FIELD(area.min_y_m), FIELD(area.max_x_m), FIELD(area.max_y_m), \
       NODE_FIELD(Config, node_id), NODE_FIELD(Config, tx.x_m), NODE_FIELD(Config, tx.y_m),            \
@@ -29,6 +33,19 @@ constexpr link::RegisterField of_each_node(link::RegisterField field) {
 #define FRAME_FIELDS                                                                                   \
   FIELD(frame_period_s), FIELD(frame_assembler.deadline_us), FIELD(frame_assembler.dead_after_frames), \
       FIELD(frame_assembler.resync_after_reports), FIELD(frame_assembler.max_delay_s)
+#define TRACE_PAIRING_FIELDS                                                                  \
+  FIELD(trace_pairing.rule), FIELD(trace_pairing.closing), FIELD(trace_pairing.separation_m), \
+      FIELD(trace_pairing.clock_hz), FIELD(trace_pairing.correction_samples),                 \
+      FIELD(trace_pairing.completion_limit)
+#define PATH_TRACKER_FIELDS                                                                                 \
+  FIELD(path_tracker.acceleration_density_m2ps3), FIELD(path_tracker.velocity_std_mps),                     \
+      FIELD(path_tracker.path_std_m), FIELD(path_tracker.common_path_std_m), FIELD(path_tracker.gate),      \
+      FIELD(path_tracker.missing_cost), FIELD(path_tracker.lone_gate), FIELD(path_tracker.lone_limit),      \
+      FIELD(path_tracker.cut_off), FIELD(path_tracker.confirm_updates), FIELD(path_tracker.confirm_window), \
+      FIELD(path_tracker.silent_time_s), FIELD(path_tracker.silent_velocity_time_s),                        \
+      FIELD(path_tracker.birth_exclusion_m), FIELD(path_tracker.merge_distance_m),                          \
+      FIELD(path_tracker.merge_speed_mps), FIELD(path_tracker.max_tracks),                                  \
+      FIELD(path_tracker.path_std_growth), FIELD(path_tracker.body_half_height_m)
 #define TRACK_FIELDS                                                                                   \
   FIELD(tracks.association), FIELD(tracks.update), FIELD(tracks.gate_m), FIELD(tracks.cost_max_m),     \
       FIELD(tracks.gate_sigma), FIELD(tracks.silent_gate_growth_mps), FIELD(tracks.silent_gate_max_m), \
@@ -135,40 +152,45 @@ constexpr link::RegisterField kThroughWallFields[] = {
     FRAME_FIELDS,
     FIELD(body_radius_m),
     FIELD(track_aided),
-    FIELD(trace_pairing.rule),
-    FIELD(trace_pairing.closing),
-    FIELD(trace_pairing.separation_m),
-    FIELD(trace_pairing.clock_hz),
-    FIELD(trace_pairing.correction_samples),
-    FIELD(trace_pairing.completion_limit),
+    TRACE_PAIRING_FIELDS,
     FIELD(line_locator.wall.thickness_m),
     FIELD(line_locator.wall.relative_permittivity),
     FIELD(line_locator.wall.compensation),
     FIELD(line_locator.path_std_m),
-    FIELD(path_tracker.acceleration_density_m2ps3),
-    FIELD(path_tracker.velocity_std_mps),
-    FIELD(path_tracker.path_std_m),
-    FIELD(path_tracker.common_path_std_m),
-    FIELD(path_tracker.gate),
-    FIELD(path_tracker.missing_cost),
-    FIELD(path_tracker.lone_gate),
-    FIELD(path_tracker.lone_limit),
-    FIELD(path_tracker.cut_off),
-    FIELD(path_tracker.confirm_updates),
-    FIELD(path_tracker.confirm_window),
-    FIELD(path_tracker.silent_time_s),
-    FIELD(path_tracker.silent_velocity_time_s),
-    FIELD(path_tracker.birth_exclusion_m),
-    FIELD(path_tracker.merge_distance_m),
-    FIELD(path_tracker.merge_speed_mps),
-    FIELD(path_tracker.max_tracks),
-    FIELD(path_tracker.path_std_growth),
-    FIELD(path_tracker.body_half_height_m),
+    PATH_TRACKER_FIELDS,
+    TRACK_FIELDS,
+};
+
+#undef FIELD
+#define FIELD(member) ECHOFUSE_REGISTER(ThroughWall3dHubConfig, member)
+
+constexpr link::RegisterField kThroughWall3dFields[] = {
+    SITE_FIELDS(ThroughWall3dHubConfig),
+    FIELD(area.min_z_m),
+    FIELD(area.max_z_m),
+    NODE_FIELD(ThroughWall3dHubConfig, tx.z_m),
+    NODE_FIELD(ThroughWall3dHubConfig, rx.z_m),
+    FRAME_FIELDS,
+    FIELD(body_radius_m),
+    FIELD(track_aided),
+    TRACE_PAIRING_FIELDS,
+    FIELD(range_difference_m),
+    FIELD(taylor_3d.wall.thickness_m),
+    FIELD(taylor_3d.wall.relative_permittivity),
+    FIELD(taylor_3d.wall.compensation),
+    FIELD(taylor_3d.start),
+    FIELD(taylor_3d.range_kind),
+    FIELD(taylor_3d.min_step_m),
+    FIELD(taylor_3d.max_iterations),
+    FIELD(path_std_m),
+    PATH_TRACKER_FIELDS,
     TRACK_FIELDS,
 };
 
 #undef FIELD
 #undef TRACK_FIELDS
+#undef PATH_TRACKER_FIELDS
+#undef TRACE_PAIRING_FIELDS
 #undef FRAME_FIELDS
 #undef SITE_FIELDS
 #undef NODE_FIELD
@@ -178,5 +200,7 @@ constexpr link::RegisterField kThroughWallFields[] = {
 Span<const link::RegisterField> config_registers() { return kSensorRadarFields; }
 
 Span<const link::RegisterField> through_wall_registers() { return kThroughWallFields; }
+
+Span<const link::RegisterField> through_wall_3d_registers() { return kThroughWall3dFields; }
 
 }  // namespace echofuse::hub
