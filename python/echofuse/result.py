@@ -62,6 +62,8 @@ class RunResult:
     baseline_metrics: dict[str, float]
     #: POINT_DTYPE by way: what the simpler ways located
     compared_points: dict[str, NDArray[np.void]] = field(default_factory=dict)
+    #: TRACK_DTYPE by way: what the simpler ways tracked; `baseline_tracks` are one of them
+    compared_tracks: dict[str, NDArray[np.void]] = field(default_factory=dict)
     associated: NDArray[np.void] = field(default_factory=lambda: np.zeros(0, ASSOCIATED_DTYPE))
     target: str = "inprocess"  # what it ran on
     counters: dict[str, dict[str, int]] = field(

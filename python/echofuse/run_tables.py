@@ -66,6 +66,7 @@ class RunTables:
         self._shown: dict[str, Taps] = {}
         self._compared = baseline_of(recording.pipeline, config)
         self._compared_points: dict[str, list[NDArray[np.void]]] = {}
+        self._compared_tracks: dict[str, list[NDArray[np.void]]] = {}
         self._associated: list[NDArray[np.void]] = []
 
     def add_scan(self, scan: Scan, output: NodeOutput, *, shown: bool) -> None:
@@ -100,6 +101,9 @@ class RunTables:
         for way, located in compared.points.items():
             table = self._compared_points.setdefault(way, [])
             table.append(_point_rows(number, frame.time_us, located))
+        for way, tracks in compared.way_tracks.items():
+            table = self._compared_tracks.setdefault(way, [])
+            table.append(self._track_rows(number, frame.time_us, tracks))
 
     def _track_rows(self, frame: int, time_us: int, tracks: NDArray[np.void]) -> NDArray[np.void]:
         return frame_rows(tracks, TRACK_DTYPE, frame, time_us, pipeline=self._recording.pipeline)
@@ -115,6 +119,7 @@ class RunTables:
             tracks=_joined(self._tracks, TRACK_DTYPE),
             baseline_tracks=_joined(self._baseline, TRACK_DTYPE),
             compared_points={way: _joined(rows, POINT_DTYPE) for way, rows in self._compared_points.items()},
+            compared_tracks={way: _joined(rows, TRACK_DTYPE) for way, rows in self._compared_tracks.items()},
             associated=_joined(self._associated, ASSOCIATED_DTYPE),
             metrics={},
             baseline_metrics={},

@@ -119,7 +119,7 @@ def test_the_climb_has_constant_speed_and_the_stairs_slope() -> None:
 def test_the_body_stays_within_the_paper_s_cuboid(seed: int) -> None:
     body = Body(CLIMBER, np.random.default_rng(seed))
     time_s = np.linspace(0.0, CLIMB_S, 400)
-    lower_m, upper_m = body_cuboid(CLIMBER, CLIMBER.position_m(time_s))
+    lower_m, upper_m = body_cuboid(CLIMBER.position_m(time_s), CLIMBER.height_m)
     np.testing.assert_allclose(upper_m - lower_m, np.tile(BODY_SIZE_M, (400, 1)))
     np.testing.assert_allclose(lower_m[:, 2], CLIMBER.walk.ground_m(time_s))
     skin_m = np.stack([body.scatterers(t).position_m for t in time_s])  # (400, n, 3)

@@ -58,10 +58,15 @@ def walking_frames(result: RunResult) -> tuple[int, int]:
 
 def _against_people(result: RunResult, tracks: NDArray[np.void]) -> Errors:
     from echofuse.evaluation.tracking import match_tracks
-    from echofuse.metrics import settle_s
+    from echofuse.metrics import dimension_of, settle_s
 
-    after_s = settle_s(result.site.pipeline)
-    matches = match_tracks(tracks, setting.frame_time_s(result), result.recording.truth, settle_s=after_s)
+    matches = match_tracks(
+        tracks,
+        setting.frame_time_s(result),
+        result.recording.truth,
+        settle_s=settle_s(result.site.pipeline),
+        dimension=dimension_of(result.site),
+    )
     over_time_m = np.full((result.frame_time_us.size, len(result.recording.truth)), np.nan)
     over_time_m[matches.frames] = np.where(np.isfinite(matches.error_m), matches.error_m, np.nan)
     return Errors(over_time_m=over_time_m, counted_m=matches.error_m[matches.present])

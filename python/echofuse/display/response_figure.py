@@ -82,7 +82,7 @@ def _true_delays_ns(result: RunResult, node: NodeRecording) -> NDArray[np.float6
     positions, present = true_positions(people, setting.frame_time_s(result))
     if not people:
         return np.zeros((len(positions), 0))
-    path_m = true_path_m(node, np.nan_to_num(positions), people, wall_of(result.site))
+    path_m = true_path_m(node, np.nan_to_num(positions), wall_of(result.site))
     return np.where(present, path_m / SPEED_OF_LIGHT_MPS * 1e9, np.nan)
 
 

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.evaluation.limits import covariance_bound_m2
-from echofuse.evaluation.tracking import Matches, true_positions
+from echofuse.evaluation.tracking import Matches, places_m, true_positions
 from echofuse.recording.model import PersonTruth
 from echofuse.simulation.wall import Wall, refracted
 
@@ -40,19 +40,26 @@ def path_behind_wall_m(position_m: ArrayLike, tx_m: ArrayLike, rx_m: ArrayLike, 
 
 
 def position_error_bound_behind_wall_m(
-    position_m: ArrayLike, tx_m: ArrayLike, rx_m: ArrayLike, path_sigma_m: float, wall: Wall
+    position_m: ArrayLike,
+    tx_m: ArrayLike,
+    rx_m: ArrayLike,
+    path_sigma_m: float,
+    wall: Wall,
+    *,
+    dimension: int = 2,
 ) -> Array:
-    """Return the least root mean square error (...,) [m] of x and y from the paths of n receivers.
+    """Return the least root mean square error (...,) [m] of a position from the paths of n receivers.
 
-    position_m: (..., 3), its height known; tx_m, rx_m: (n, 3). A ray's gradient is its direction in the air
-    behind the wall, so the information is that of bent ellipses: the covariance of `line_locator`.
+    position_m: (..., 3); tx_m, rx_m: (n, 3). dimension: 3, or 2 for the error of x and y where the height is
+    known. A ray's gradient is its direction in the air behind the wall, so the information is that of bent
+    ellipsoids: the covariance of `taylor_3d` in space and of `line_locator` in the plane.
     """
     position = np.asarray(position_m, np.float64)
     gradients = [
         _leg(position, tx, wall)[1] + _leg(position, rx, wall)[1]
         for tx, rx in zip(np.asarray(tx_m), np.asarray(rx_m), strict=True)
     ]
-    covariance = covariance_bound_m2(np.stack(gradients, axis=-2) / path_sigma_m)
+    covariance = covariance_bound_m2(np.stack(gradients, axis=-2)[..., :dimension] / path_sigma_m)
     return np.asarray(np.sqrt(np.trace(covariance, axis1=-2, axis2=-1)))
 
 
@@ -89,7 +96,12 @@ def false_track_ids(tracks: NDArray[np.void], matches: Matches, confirmed_state:
 
 
 def ghosts_per_frame(
-    points: NDArray[np.void], frames: NDArray[np.intp], frame_time_s: Array, truth: Sequence[PersonTruth]
+    points: NDArray[np.void],
+    frames: NDArray[np.intp],
+    frame_time_s: Array,
+    truth: Sequence[PersonTruth],
+    *,
+    dimension: int = 2,
 ) -> float:
     """Return how many of the located points (n,) a frame lie farther than GHOST_M from everybody.
 
@@ -97,18 +109,21 @@ def ghosts_per_frame(
     """
     counted = points[np.isin(points["frame"], frames)]
     positions, present = true_positions(truth, frame_time_s[counted["frame"]])
-    place = np.column_stack([counted["x_m"], counted["y_m"]]).astype(np.float64)
-    distance = np.linalg.norm(positions - place[:, np.newaxis], axis=-1)
+    place = places_m(counted, dimension)
+    distance = np.linalg.norm(positions[..., :dimension] - place[:, np.newaxis], axis=-1)
     nearest = np.min(np.where(present, distance, np.inf), axis=1, initial=np.inf)
     return float(np.sum(nearest > GHOST_M) / frames.size) if frames.size else float("nan")
 
 
 def _leg(position_m: Array, end_m: ArrayLike, wall: Wall) -> tuple[Array, Array]:
-    """Return the optical length (...,) [m] between an antenna and positions, and its gradient (..., 2)."""
+    """Return the optical length (...,) [m] between an antenna and positions, and its gradient (..., 3)."""
     offset = position_m - np.asarray(end_m, np.float64)
     across_m = np.hypot(offset[..., 0], offset[..., 2])
     air_m = np.maximum(np.abs(offset[..., 1]) - wall.thickness_m, LEAST_AIR_M)
     rays = refracted(wall, across_m, air_m)
-    share = np.divide(offset[..., 0], across_m, out=np.zeros_like(across_m), where=across_m > 0.0)
-    along, deep = rays.sine * share, np.sqrt(1.0 - rays.sine**2) * np.sign(offset[..., 1])
-    return rays.delay_s * SPEED_OF_LIGHT_MPS, np.stack([along, deep], axis=-1)
+    along, up = (
+        rays.sine * np.divide(offset[..., axis], across_m, out=np.zeros_like(across_m), where=across_m > 0.0)
+        for axis in (0, 2)
+    )
+    deep = np.sqrt(1.0 - rays.sine**2) * np.sign(offset[..., 1])
+    return rays.delay_s * SPEED_OF_LIGHT_MPS, np.stack([along, deep, up], axis=-1)

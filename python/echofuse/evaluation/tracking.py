@@ -3,7 +3,8 @@
 Definitions. Evaluated are the frames after the first `settle_s` seconds. A person is present in the frames
 within her own true times. A track is alive when it is confirmed or silent; unconfirmed ones are the tracker's
 own business. In each frame alive tracks and present people are matched one to one, at the least sum of
-distances, each cut off at `gate_m`; a pair farther apart than that is no match.
+distances, each cut off at `gate_m`; a pair farther apart than that is no match. Distances are those in the
+plane of the floor, or in space where the pipeline's positions have a height.
 """
 
 from collections.abc import Sequence
@@ -23,6 +24,7 @@ __all__ = [
     "error_quantile_m",
     "evaluate_tracks",
     "match_tracks",
+    "places_m",
     "true_positions",
 ]
 
@@ -75,13 +77,15 @@ def evaluate_tracks(
     gate_m: float = 1.0,
     settle_s: float = 1.0,
     bound_m: ArrayLike | None = None,
+    dimension: int = 2,
 ) -> TrackingMetrics:
     """Return the metrics of tracks (n,) [recording.TRACK_DTYPE] against the truth.
 
     frame_time_s: (n_frames,) on the clock of the truth; frame f of the tracks is its element f.
-    bound_m: position error bound, a number or (n_frames, n_people), for the ratio.
+    bound_m: position error bound, a number or (n_frames, n_people), for the ratio. dimension: 2 in the plane,
+    3 in space.
     """
-    matches = match_tracks(tracks, frame_time_s, truth, gate_m=gate_m, settle_s=settle_s)
+    matches = match_tracks(tracks, frame_time_s, truth, gate_m=gate_m, settle_s=settle_s, dimension=dimension)
     present, matched = matches.present, np.isfinite(matches.error_m)
     n_pairs, n_frames = int(present.sum()), matches.frames.size
     errors = matches.error_m[present]
@@ -116,11 +120,13 @@ def match_tracks(
     *,
     gate_m: float = 1.0,
     settle_s: float = 1.0,
+    dimension: int = 2,
 ) -> Matches:
     """Match alive tracks with present people in every frame after the first `settle_s`."""
     time_s = np.asarray(frame_time_s, np.float64)
     frames = np.flatnonzero(time_s >= time_s[0] + settle_s) if time_s.size else np.zeros(0, np.intp)
     positions, present = true_positions(truth, time_s[frames])
+    positions = positions[..., :dimension]
     alive = tracks[(tracks["state"] == CONFIRMED) | (tracks["state"] == SILENT)]
     alive = alive[np.argsort(alive["frame"], kind="stable")]
     starts = np.searchsorted(alive["frame"], frames, side="left")
@@ -132,8 +138,7 @@ def match_tracks(
     for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
         here = alive[start:end]
         people = np.flatnonzero(present[row])
-        points = np.column_stack([here["x_m"], here["y_m"]]).astype(np.float64)
-        chosen, columns, distance = _assign(points, positions[row, people], gate_m)
+        chosen, columns, distance = _assign(places_m(here, dimension), positions[row, people], gate_m)
         error_m[row, people[columns]] = distance
         track_id[row, people[columns]] = here["id"][chosen]
         confirmed[row, people[columns]] = here["state"][chosen] == CONFIRMED
@@ -155,8 +160,8 @@ def match_tracks(
 def true_positions(
     truth: Sequence[PersonTruth], time_s: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return x and y (n_times, n_people, 2) [m], interpolated, and who is there (n_times, n_people)."""
-    positions = np.full((time_s.size, len(truth), 2), np.nan)
+    """Return positions (n_times, n_people, 3) [m], interpolated, and who is there (n_times, n_people)."""
+    positions = np.full((time_s.size, len(truth), 3), np.nan)
     present = np.zeros((time_s.size, len(truth)), np.bool_)
     for index, person in enumerate(truth):
         if person.time_s.size == 0:
@@ -164,9 +169,14 @@ def true_positions(
         # Frames close a little after the scans from which they are made.
         slack_s = 1e-6 + (float(np.median(np.diff(person.time_s))) if person.time_s.size > 1 else 0.0)
         present[:, index] = (time_s >= person.time_s[0] - 1e-6) & (time_s <= person.time_s[-1] + slack_s)
-        for axis in range(2):
+        for axis in range(3):
             positions[:, index, axis] = np.interp(time_s, person.time_s, person.position_m[:, axis])
     return positions, present
+
+
+def places_m(rows: NDArray[np.void], dimension: int) -> NDArray[np.float64]:
+    """Return the positions (n, dimension) [m] of tracks or points (n,)."""
+    return np.column_stack([rows[name] for name in ("x_m", "y_m", "z_m")[:dimension]]).astype(np.float64)
 
 
 def error_quantile_m(errors_m: ArrayLike, fraction: float) -> float:

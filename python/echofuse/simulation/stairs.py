@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from echofuse.recording import Recording
 from echofuse.simulation.m_sequence import MSequenceRadar
-from echofuse.simulation.people import Person
+from echofuse.simulation.people import TORSO_HEIGHTS, Person
 from echofuse.simulation.scene import Furniture, Point, Room, rough_walls
 from echofuse.simulation.through_wall import simulate_through_wall
 from echofuse.simulation.through_wall_scene import (
@@ -103,13 +103,18 @@ def stairs_climber(*, speed_mps: float = SPEED_MPS) -> Person:
     )
 
 
-def body_cuboid(person: Person, position_m: Array) -> tuple[Array, Array]:
+def climb_s(person: Person) -> float:
+    """How long a person takes for one way [s]."""
+    return person.walk.length_m / person.walk.speed_mps
+
+
+def body_cuboid(position_m: Array, height_m: float = BODY_SIZE_M[2]) -> tuple[Array, Array]:
     """Lowest and highest corner (n, 3) [m] of the paper's cuboid about true positions (n, 3) of a person.
 
-    It stands on the ground, 1.8 m high, with the torso's axis in its middle.
+    It stands on the ground, 1.8 m high however tall the person is, with the torso's axis in its middle.
     """
     size_m = np.array(BODY_SIZE_M)
-    lower_m = position_m - np.array([size_m[0] / 2.0, size_m[1] / 2.0, person.centre_height_m])
+    lower_m = position_m - np.array([size_m[0] / 2.0, size_m[1] / 2.0, TORSO_HEIGHTS[1] * height_m])
     return lower_m, lower_m + size_m
 
 
@@ -132,7 +137,7 @@ def simulate_stairs(
         raise ValueError(f"scene: {scene.name} has {len(scene.nodes)} receivers, expected 4 or more")
     climber = person or stairs_climber()
     if duration_s is None:
-        duration_s = climber.walk.length_m / climber.walk.speed_mps
+        duration_s = climb_s(climber)
     return simulate_through_wall(
         scene, (climber,), seed=seed, duration_s=duration_s, power_up_s=power_up_s, progress=progress
     )
