@@ -81,19 +81,21 @@ def nominal_source(site: Site, place: SiteNode) -> NodeRecording:
 
 def hub_config(site: Site) -> Any:
     """Return the hub's configuration, of the pipeline's class: the geometry of the site, then [pipeline]."""
-    config = PIPELINES[site.pipeline].hub_config()
+    kind = PIPELINES[site.pipeline]
+    config = kind.hub_config()
     config.set_nodes(
         [node.id for node in site.nodes],
-        np.array([node.tx_position_m[:2] for node in site.nodes], np.float32),
-        np.array([node.rx_position_m[:2] for node in site.nodes], np.float32),
+        np.array([node.tx_position_m[: kind.dimension] for node in site.nodes], np.float32),
+        np.array([node.rx_position_m[: kind.dimension] for node in site.nodes], np.float32),
     )
-    x_min, y_min, x_max, y_max = site.bounds_m
-    config.set_area(x_min, y_min, x_max, y_max)
+    config.set_area(*(site.box_m if kind.dimension == 3 else site.bounds_m))
     if hasattr(config, "phd"):
+        x_min, y_min, x_max, y_max = site.bounds_m
         config.phd.area_m2 = (x_max - x_min) * (y_max - y_min)
-    if hasattr(config, "line_locator") and site.wall is not None:
-        config.line_locator.wall.thickness_m = site.wall.thickness_m
-        config.line_locator.wall.relative_permittivity = site.wall.relative_permittivity
+    locator = getattr(config, "taylor_3d" if kind.dimension == 3 else "line_locator", None)
+    if locator is not None and site.wall is not None:
+        locator.wall.thickness_m = site.wall.thickness_m
+        locator.wall.relative_permittivity = site.wall.relative_permittivity
     apply_settings(config, site.settings)
     return config
 

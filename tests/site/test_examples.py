@@ -29,7 +29,7 @@ def test_the_real_walk_has_its_path() -> None:
     assert truth.walking_scans == (30, 740)
 
 
-@pytest.mark.parametrize("name", ["sensor_radar", "through_wall"])
+@pytest.mark.parametrize("name", ["sensor_radar", "through_wall", "stairs"])
 def test_every_compiled_setting_can_be_said(name: str) -> None:
     """Each field of the compiled defaults, written as TOML, loads and changes nothing."""
     site = example_site(name)

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+from echofuse.simulation.m_sequence import MSequenceRadar
 from echofuse.simulation.people import Person
-from echofuse.simulation.scene import RadarNode, Room, rough_walls
+from echofuse.simulation.scene import Point, RadarNode, Room, rough_walls
+from echofuse.simulation.stairs import RADAR as STAIRS_RADAR
 from echofuse.simulation.through_wall_scene import (
     ANTENNA_HEIGHT_M,
     BODY_RADIUS_M,
@@ -27,21 +29,23 @@ __all__ = ["site_scene_behind_wall", "site_walkers_behind_wall"]
 def site_scene_behind_wall(site: Site) -> ThroughWallScene:
     """Return a site's antennas, wall and room, with the case study's radio and plaster.
 
-    The site does not say where the wall stands: it ends where the area begins. A height of 0 stands for one
-    not given and becomes that of the case study's device.
+    The site does not say where the wall stands: it ends where the area begins. In the plane a height of 0
+    stands for one not given and becomes that of the case study's device. A site in space has the radio of the
+    case study in space, and the room is its box.
     """
     assert site.wall is not None, "the loader has seen to it"
     x_min, y_min, x_max, y_max = site.bounds_m
-    tx_x, tx_y, tx_z = site.nodes[0].tx_position_m
-    height_m = tx_z or ANTENNA_HEIGHT_M
+    in_space = site.heights_m is not None
+    z_min, z_max = site.heights_m or (0.0, ROOM_HEIGHT_M)
+    lift_m = 0.0 if in_space or site.nodes[0].tx_position_m[2] else ANTENNA_HEIGHT_M
     wall = Wall(
         front_m=y_min - site.wall.thickness_m,
         thickness_m=site.wall.thickness_m,
         permittivity=site.wall.relative_permittivity,
     )
     room = Room(
-        lower_m=(x_min, wall.back_m, 0.0),
-        upper_m=(x_max, y_max, ROOM_HEIGHT_M),
+        lower_m=(x_min, wall.back_m, z_min),
+        upper_m=(x_max, y_max, z_max),
         wall_reflections=WALL_REFLECTIONS,
         floor_reflection=FLOOR_REFLECTION,
         ceiling_reflection=CEILING_REFLECTION,
@@ -50,8 +54,8 @@ def site_scene_behind_wall(site: Site) -> ThroughWallScene:
         RadarNode(
             name=node.name,
             node_id=node.id,
-            tx_position_m=(tx_x, tx_y, height_m),
-            rx_position_m=(node.rx_position_m[0], tx_y, height_m),
+            tx_position_m=_lifted(site.nodes[0].tx_position_m, lift_m),
+            rx_position_m=_lifted(node.rx_position_m, lift_m),
         )
         for node in site.nodes
     )
@@ -60,17 +64,22 @@ def site_scene_behind_wall(site: Site) -> ThroughWallScene:
         nodes=nodes,
         room=room,
         wall=wall,
+        radar=STAIRS_RADAR if in_space else MSequenceRadar(),
         furniture=rough_walls(room, ROUGH_WALL_SCATTERERS, ROUGH_WALL_RCS_M2, ROUGH_WALL_SEED),
     )
 
 
 def site_walkers_behind_wall(scene: ThroughWallScene, count: int) -> tuple[Person, ...]:
-    """Return the case study's people, their walks stretched from its room to the scene's, their pace kept."""
+    """Return the case study's people on the floor, their walks stretched from its room to the scene's.
+
+    They keep their pace.
+    """
     model, room = through_wall_scene().room, scene.room
+    floor_m = room.lower_m[2]
 
     def stretched(point_m: tuple[float, ...]) -> tuple[float, ...]:
-        x, y, *height = point_m
-        return _stretched(x, model, room, 0), _stretched(y, model, room, 1), *height
+        x, y = (_stretched(point_m[axis], model, room, axis) for axis in (0, 1))
+        return (x, y, floor_m) if floor_m else (x, y)
 
     return tuple(
         replace(
@@ -79,6 +88,11 @@ def site_walkers_behind_wall(scene: ThroughWallScene, count: int) -> tuple[Perso
         )
         for person in case_study_walkers(count)
     )
+
+
+def _lifted(position_m: Point, by_m: float) -> Point:
+    x, y, z = position_m
+    return x, y, z + by_m
 
 
 def _stretched(value_m: float, model: Room, room: Room, axis: int) -> float:

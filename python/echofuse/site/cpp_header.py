@@ -16,6 +16,7 @@ HEADERS = {
     "SensorRadarHubConfig": "echofuse/hub/hub.hpp",
     "ThroughWallNodeConfig": "echofuse/node/through_wall.hpp",
     "ThroughWallHubConfig": "echofuse/hub/through_wall.hpp",
+    "ThroughWall3dHubConfig": "echofuse/hub/through_wall_3d.hpp",
 }
 
 

@@ -1,6 +1,7 @@
 """Geometry that no positioning pipeline can work with."""
 
 import math
+from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
@@ -12,6 +13,8 @@ from echofuse.site.tables import Problems
 __all__ = ["check_area", "check_around", "check_before_wall", "check_nodes"]
 
 SAME_PLACE_M = 1e-3
+#: Of the cross, along x and z: where each receiver stands beside the transmitter, in the order of the nodes.
+CROSS = ((-1, 0, "left of"), (1, 0, "right of"), (0, -1, "below"), (0, 1, "above"))
 ON_A_LINE_M = 1e-2  # greatest distance of a node from the line through all of them
 FAR_AWAY_DIAGONALS = 2.0  # a node that far outside the area is a mistake, most likely of units
 
@@ -57,21 +60,17 @@ def check_before_wall(
     wall: Wall | None,
     blind_zone_s: float,
     problems: Problems,
+    *,
+    dimension: int,
 ) -> None:
-    """Report what is not one transmitter with receivers on a line along x, before a wall, before the area.
+    """Report what is not one transmitter with receivers beside it, before a wall, before the area.
 
-    blind_zone_s: after the cross-talk; echoes that begin within are not reported.
+    blind_zone_s: after the cross-talk; echoes that begin within are not reported. dimension: receivers on a
+    line along x tell positions in the plane (2), four in a cross those in space (3).
     """
-    _, tx_y, tx_z = tx_m = nodes[0].tx_position_m
+    tx_y = nodes[0].tx_position_m[1]
     before = len(problems.lines)
-    for i, node in enumerate(nodes, start=1):
-        rx_x, rx_y, rx_z = node.rx_position_m
-        if math.dist(node.tx_position_m, tx_m) > SAME_PLACE_M:
-            expected = f"{list(tx_m)}, the transmitter of node[1]: all receivers listen to one"
-            problems.add(f"node[{i}].tx_position_m", expected, list(node.tx_position_m))
-        elif max(abs(rx_y - tx_y), abs(rx_z - tx_z)) > ON_A_LINE_M or abs(rx_x - tx_m[0]) < ON_A_LINE_M:
-            expected = f"a place beside the transmitter, along x: y = {tx_y:g}, z = {tx_z:g}"
-            problems.add(f"node[{i}].rx_position_m", expected, list(node.rx_position_m))
+    (_check_cross if dimension == 3 else _check_line)(nodes, problems)
     if wall is None:
         problems.add("site.wall", "a table with thickness_m and relative_permittivity", "nothing")
         return
@@ -85,6 +84,44 @@ def check_before_wall(
     if depth_m <= wall.thickness_m:
         expected = f"a wall before the nearest range: blind_zone_s = {blind_zone_s:g} ends at {depth_m:.2f} m"
         problems.add("site.wall.thickness_m", expected, wall.thickness_m)
+
+
+def _check_line(nodes: tuple[SiteNode, ...], problems: Problems) -> None:
+    """Report what is not one transmitter with receivers on a line along x."""
+    tx_x, tx_y, tx_z = nodes[0].tx_position_m
+    for i, node in _with_one_transmitter(nodes, problems):
+        rx_x, rx_y, rx_z = node.rx_position_m
+        if max(abs(rx_y - tx_y), abs(rx_z - tx_z)) > ON_A_LINE_M or abs(rx_x - tx_x) < ON_A_LINE_M:
+            expected = f"a place beside the transmitter, along x: y = {tx_y:g}, z = {tx_z:g}"
+            problems.add(f"node[{i}].rx_position_m", expected, list(node.rx_position_m))
+
+
+def _check_cross(nodes: tuple[SiteNode, ...], problems: Problems) -> None:
+    """Report what is not one transmitter in the middle of a cross: nodes left, right, below and above."""
+    tx_x, tx_y, tx_z = nodes[0].tx_position_m
+    spacing_m = tx_x - nodes[0].rx_position_m[0]
+    if spacing_m < ON_A_LINE_M:
+        expected = f"a place left of the transmitter: x below {tx_x:g}, y = {tx_y:g}, z = {tx_z:g}"
+        problems.add("node[1].rx_position_m", expected, list(nodes[0].rx_position_m))
+        return
+    for i, node in _with_one_transmitter(nodes, problems):
+        along, up, where = CROSS[i - 1]
+        place_m = (tx_x + along * spacing_m, tx_y, tx_z + up * spacing_m)
+        if math.dist(node.rx_position_m, place_m) > SAME_PLACE_M:
+            at = [round(value, 6) for value in place_m]
+            expected = f"{at}, {where} the transmitter as far as node[1] is left of it"
+            problems.add(f"node[{i}].rx_position_m", expected, list(node.rx_position_m))
+
+
+def _with_one_transmitter(nodes: tuple[SiteNode, ...], problems: Problems) -> Iterator[tuple[int, SiteNode]]:
+    """Yield the nodes from 1 on that listen to the first one's transmitter, and report the others."""
+    tx_m = nodes[0].tx_position_m
+    for i, node in enumerate(nodes, start=1):
+        if math.dist(node.tx_position_m, tx_m) > SAME_PLACE_M:
+            expected = f"{list(tx_m)}, the transmitter of node[1]: all receivers listen to one"
+            problems.add(f"node[{i}].tx_position_m", expected, list(node.tx_position_m))
+        else:
+            yield i, node
 
 
 def _nearest_depth_m(node: SiteNode, wall: Wall, blind_zone_s: float) -> float:

@@ -85,7 +85,7 @@ class _Root:
                 self.problems.add(key, suggestion(key, tables), "an unknown key")
         head = self.table("site")
         name = head.string("name", required=True)
-        area = _area(head)
+        area, heights_m = _area(head, self.dimension())
         wall = _wall(head, self.problems)
         head.finish()
         nodes = self.nodes()
@@ -99,7 +99,14 @@ class _Root:
         if name is None or area is None or nodes is None or pipeline is None:
             return None
         return Site(
-            name=name, nodes=nodes, area=area, pipeline=pipeline, settings=settings, wall=wall, truth=truth
+            name=name,
+            nodes=nodes,
+            area=area,
+            heights_m=heights_m,
+            pipeline=pipeline,
+            settings=settings,
+            wall=wall,
+            truth=truth,
         )
 
     def check_positions(
@@ -113,10 +120,18 @@ class _Root:
                 self.problems.add("node", expected, f"{len(nodes)}")
         elif kind.behind_wall:
             if len(nodes) > most:
-                self.problems.add("node", f"at most {most} nodes on the line", f"{len(nodes)}")
-            check_before_wall(nodes, area, wall, self.blind_zone_s, self.problems)
+                shape = "in the cross" if kind.dimension == 3 else "on the line"
+                self.problems.add("node", f"at most {most} nodes {shape}", f"{len(nodes)}")
+                return
+            check_before_wall(nodes, area, wall, self.blind_zone_s, self.problems, dimension=kind.dimension)
         else:
             check_around(nodes, self.problems)
+
+    def dimension(self) -> int:
+        """Return that of the pipeline's positions, 2 of a pipeline that is not known."""
+        table = self.tree.get("pipeline")
+        kind = PIPELINES.get(str(table.get("name"))) if isinstance(table, dict) else None
+        return 2 if kind is None else kind.dimension
 
     def table(self, key: str) -> Table:
         if key not in self.tree:
@@ -186,7 +201,22 @@ class _Root:
         return TruePath(path_m=tuple(path), walking_scans=(scans[0], scans[1]) if scans else None)
 
 
-def _area(table: Table) -> tuple[Point2, ...] | None:
+def _area(table: Table, dimension: int) -> tuple[tuple[Point2, ...] | None, tuple[float, float] | None]:
+    """Return the area's vertices on the floor and, in space, its least and greatest z."""
+    if dimension == 2:
+        return _polygon(table), None
+    expected = "[x_min, y_min, z_min, x_max, y_max, z_max], a box in metres"
+    numbers = table.numbers("area", (6,), expected, required=True)
+    if numbers is None:
+        return None, None
+    x_min, y_min, z_min, x_max, y_max, z_max = numbers
+    if not (x_min < x_max and y_min < y_max and z_min < z_max):
+        table.wrong("area", "x_min < x_max, y_min < y_max and z_min < z_max", numbers)
+        return None, None
+    return rectangle(x_min, y_min, x_max, y_max), (z_min, z_max)
+
+
+def _polygon(table: Table) -> tuple[Point2, ...] | None:
     """Return the vertices of ``area = [x_min, y_min, x_max, y_max]`` or ``[[x, y], [x, y], [x, y], ...]``."""
     expected = "[x_min, y_min, x_max, y_max] or at least three points [x, y], in metres"
     raw = table.values.get("area")

@@ -59,6 +59,7 @@ class Site:
     nodes: tuple[SiteNode, ...]
     area: tuple[Point2, ...]  # vertices of the watched polygon
     pipeline: str
+    heights_m: tuple[float, float] | None = None  # z of a watched box, where positions are in space
     settings: Settings = field(default_factory=dict)  # of [pipeline]; only what the file says, no defaults
     wall: Wall | None = None
     truth: TruePath | None = None
@@ -68,6 +69,14 @@ class Site:
         """The rectangle around the area: x_min, y_min, x_max, y_max."""
         xs, ys = zip(*self.area, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
+
+    @property
+    def box_m(self) -> tuple[float, float, float, float, float, float]:
+        """The watched box: x_min, y_min, z_min, x_max, y_max, z_max; a site in the plane has none."""
+        if self.heights_m is None:
+            raise ValueError(f"the site {self.name} has an area in the plane")
+        (x_min, y_min, x_max, y_max), (z_min, z_max) = self.bounds_m, self.heights_m
+        return x_min, y_min, z_min, x_max, y_max, z_max
 
     @property
     def area_is_rectangle(self) -> bool:
@@ -92,9 +101,17 @@ def bare_site(recording: "Recording") -> Site:
         )
         for node in recording.nodes
     )
-    xs, ys, _ = zip(*(end for node in nodes for end in (node.tx_position_m, node.rx_position_m)), strict=True)
+    ends = [end for node in nodes for end in (node.tx_position_m, node.rx_position_m)]
+    xs, ys, zs = zip(*ends, strict=True)
     area = rectangle(min(xs) - BARE_MARGIN_M, min(ys), max(xs) + BARE_MARGIN_M, max(ys) + 2.0 * BARE_MARGIN_M)
-    return Site(name="nodes of the recording", nodes=nodes, area=area, pipeline=recording.pipeline)
+    heights_m = (min(zs) - BARE_MARGIN_M, max(zs) + BARE_MARGIN_M)
+    return Site(
+        name="nodes of the recording",
+        nodes=nodes,
+        area=area,
+        heights_m=heights_m if recording.pipeline.endswith("_3d") else None,
+        pipeline=recording.pipeline,
+    )
 
 
 def _point(position_m: Any) -> Point3:

@@ -59,7 +59,7 @@ class PipelineKind:
     hub: str
     least_nodes: int  # fewer see people, and cannot tell where they are
     most_nodes: int
-    behind_wall: bool = False  # receivers on a line before a wall, else around the area
+    behind_wall: bool = False  # receivers before a wall, on a line or (dimension 3) in a cross, else around
     dimension: int = 2  # of the positions that the hub tells
 
     def new_node(self) -> Any:
@@ -93,6 +93,14 @@ PIPELINES = {
     "sensor_radar": PipelineKind(node="SensorRadarNode", hub="SensorRadarHub", least_nodes=3, most_nodes=16),
     "through_wall_2d": PipelineKind(
         node="ThroughWallNode", hub="ThroughWallHub", least_nodes=2, most_nodes=8, behind_wall=True
+    ),
+    "through_wall_3d": PipelineKind(
+        node="ThroughWallNode",
+        hub="ThroughWall3dHub",
+        least_nodes=4,
+        most_nodes=4,
+        behind_wall=True,
+        dimension=3,
     ),
 }
 

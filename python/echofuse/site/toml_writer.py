@@ -11,7 +11,10 @@ __all__ = ["site_to_toml"]
 
 def site_to_toml(site: Site) -> str:
     """Return the text of a site file; what the site does not set is left out."""
-    area = list(site.bounds_m) if site.area_is_rectangle else [list(vertex) for vertex in site.area]
+    if site.heights_m is not None:
+        area: list[Any] = list(site.box_m)
+    else:
+        area = list(site.bounds_m) if site.area_is_rectangle else [list(vertex) for vertex in site.area]
     lines = ["[site]", *_pairs({"name": site.name, "area": area})]
     if site.wall is not None:
         lines += ["", "[site.wall]", *_pairs(vars(site.wall))]
