@@ -26,6 +26,13 @@ def room(result: RunResult) -> str:
         truth = ""
     if result.why_no_positions is not None:
         return f"The site from above. {truth}There are no positions: {result.why_no_positions}."
+    if setting.in_space(result):
+        return (
+            f"The site from above. {truth}How far before the wall the antennas stand makes no difference. "
+            "Small dots are the quadruples of traces that were located and that no track took. Each track "
+            "has its colour: solid while confirmed, dashed while silent. The thin orange line is the paper's "
+            "way: traces paired, located by TSM from 3D-2D, then a Kalman filter with nearest neighbour."
+        )
     if setting.behind_wall(result):
         return (
             f"The room behind the wall from above (the paper's Fig. 7). {truth}How far before the wall the "
@@ -40,6 +47,27 @@ def room(result: RunResult) -> str:
         "that is while nobody moves where it was last seen. The thin orange line is the Kalman filter "
         "with nearest-neighbour association on the same points."
     )
+
+
+#: What is drawn of each way in space, and where the paper has it.
+SPACE = {
+    "three_d_two_d": "Traces paired and located by 3D-2D, and a Kalman filter on these positions (the "
+    "paper's Figs. 5, 6, 9 and 10).",
+    "tsm_from_three_d_two_d": "The same with the Taylor-series method from 3D-2D (the paper's Figs. 7, 8, 11 "
+    "and 12).",
+    "tracker": "The run's own tracker, which takes part in the pairing and follows the paths themselves.",
+}
+
+
+def space(result: RunResult, way: str) -> str:
+    """Return the caption of a way's positions and tracks in space."""
+    region = (
+        " Yellow: the region of the true positions, the paper's cuboid of 1 m x 1 m x 1.8 m about the person "
+        "along the whole path. Black: the axis of the torso, which errors are measured from."
+        if setting.people(result)
+        else ""
+    )
+    return f"{SPACE[way]}{region} Tracks are solid while confirmed and dashed while silent."
 
 
 def error(result: RunResult) -> str:

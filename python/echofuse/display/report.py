@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from echofuse.result import RunResult
 
 FIGURES_FOLDER = "figures"
+SHOWN_WAYS = ("three_d_two_d", "tsm_from_three_d_two_d")  # of those that the run's tracker is compared with
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,10 +81,39 @@ def _pictures(result: RunResult) -> list[_Picture]:
                 draw=partial(error_figure, result),
             )
         )
+        whole_run += _pictures_in_space(result)
     numbered = list(enumerate((node.name for node in result.recording.nodes), start=1))
     numbered.sort(key=lambda pair: -_heaviest_cluster(result, pair[1]))  # the clearest example comes first
     return whole_run + [
         picture for number, name in numbered for picture in _pictures_of_node(result, number, name)
+    ]
+
+
+def _pictures_in_space(result: RunResult) -> list[_Picture]:
+    """Return those of the paper's two ways and of the run's tracker, none of a pipeline in the plane."""
+    from echofuse.display import captions, setting
+    from echofuse.display.space_figure import space_figure
+    from echofuse.display.ways import WAYS
+
+    if not setting.in_space(result):
+        return []
+    shown = [
+        (way, WAYS[way], result.compared_points[way], result.compared_tracks[way])
+        for way in SHOWN_WAYS
+        if way in result.compared_tracks
+    ]
+    tracker = setting.tracker_name(result)
+    return [
+        _Picture(
+            file_name=f"space-{number}-{way}.png",
+            group="run",
+            heading=f"{name} in space",
+            caption=captions.space(result, way),
+            draw=partial(space_figure, result, points, tracks, name=name),
+        )
+        for number, (way, name, points, tracks) in enumerate(
+            [*shown, ("tracker", tracker, None, result.tracks)], start=1
+        )
     ]
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from echofuse.display import setting
 from echofuse.display.health import health_lines
 from echofuse.display.report_style import STYLE_SHEET
+from echofuse.display.ways import WAY_COLUMNS, bound_line, is_of_a_way, way_rows, way_values
 
 if TYPE_CHECKING:
     from echofuse.result import RunResult
@@ -51,6 +52,8 @@ METRICS: dict[str, tuple[str, str]] = {
     "standing_silent_fraction": ("Frames after the walk with a silent track only", ""),
     "standing_quiet_fraction": ("Frames after the walk without a confirmed track", ""),
     "standing_wander_m": ("Farthest that a track went after the walk", ""),
+    "cuboid_fraction": ("Track within the paper's cuboid about the person", ""),
+    "position_error_bound_m": ("Position error bound of one response, root mean square", ""),
     "ospa_m": ("OSPA distance", ""),
     "gospa_m": ("GOSPA distance", ""),
     "path_error_std_m": ("Deviation of the nodes' measured paths", ""),
@@ -65,6 +68,17 @@ NOTE_BEHIND_WALL = (
     "Kalman filter with nearest neighbour on these points. A ghost is a located point farther than 1 m from "
     "everybody. Two people cross, or stand symmetric, while their mean paths differ by less than 1 m. "
     "Evaluated from 2 s after the first response."
+)
+NOTE_IN_SPACE = (
+    "The way beside it is the paper's on the same reports: traces paired on each axis, located by the "
+    "Taylor-series method (TSM) from 3D-2D, and a Kalman filter with nearest neighbour. Errors are distances "
+    "in space. A ghost is a located point farther than 1 m from everybody. Evaluated from 2 s after the "
+    "first response."
+)
+NOTE_WAYS = (
+    "All on the same reports. Positions: the nearest one to the person in each response, at most 1 m away; "
+    "located is the share of responses that have one. In cuboid: of all responses, within the paper's region "
+    "of 1 m x 1 m x 1.8 m about the person."
 )
 #: Counters that say how much was done rather than that something went wrong.
 WORK_DONE = frozenset(
@@ -129,7 +143,7 @@ def _metrics(result: RunResult) -> str:
     said = "" if why is None else f"<p>No positions: {escape(why)}.</p>"
     behind_wall = setting.behind_wall(result)
     both = (result.metrics, result.baseline_metrics)
-    given = list(dict.fromkeys(key for table in both for key in table))
+    given = [key for key in dict.fromkeys(key for table in both for key in table) if not is_of_a_way(key)]
     keys = [key for key in METRICS if key in given] + [key for key in given if key not in METRICS]
     if not keys:
         nothing = "<p>No truth was recorded, so there is nothing to compare the tracks with.</p>"
@@ -145,8 +159,26 @@ def _metrics(result: RunResult) -> str:
         )
     head = ["Metric", setting.tracker_name(result), setting.baseline_name(result)]
     note = NOTE_BEHIND_WALL if behind_wall else NOTE
+    if setting.in_space(result):
+        note = NOTE_IN_SPACE
     table = _table("metrics", head if behind_wall else [*head, "Paper"], rows)
-    return f"{said}{table}<p class='note'>{note}</p>"
+    return f"{said}{table}<p class='note'>{note}</p>{_ways(result)}"
+
+
+def _ways(result: RunResult) -> str:
+    """Return the table of ways to positions in space, nothing where there are none."""
+    rows = [
+        _row(escape(name), [f"<td>{escape(value)}</td>" for value in way_values(values)])
+        for name, values in way_rows(result.metrics, setting.tracker_name(result))
+    ]
+    if not rows:
+        return ""
+    half = len(WAY_COLUMNS) // 2
+    head = [f"{'positions' if at < half else 'tracks'}: {column}" for at, column in enumerate(WAY_COLUMNS)]
+    return (
+        f"<h3>Before and after tracking</h3>{_table('ways', ['Way', *head], rows)}"
+        f"<p class='note'>{NOTE_WAYS} {escape(bound_line(result.metrics))}.</p>"
+    )
 
 
 def _table(kind: str, head: Sequence[str], rows: Sequence[str]) -> str:

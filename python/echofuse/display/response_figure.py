@@ -87,7 +87,7 @@ def _true_delays_ns(result: RunResult, node: NodeRecording) -> NDArray[np.float6
 
 
 def _farthest_ns(result: RunResult, node: NodeRecording) -> float:
-    corners_m = setting.area_outline_m(result.site)
+    corners_m = setting.area_corners_m(result.site)
     return float(np.max(setting.echo_delay_s(node, corners_m))) * 1e9
 
 

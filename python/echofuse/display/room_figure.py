@@ -117,10 +117,13 @@ def draw_nodes(
             markeredgewidth=1.4,
             zorder=5,
         )
-    for name, position in zip(names, rx_m, strict=True):
-        _name_outwards(axes, name, position, middle)
+    named: dict[tuple[float, ...], list[str]] = {}  # by place: one above the other share a line
+    for name, position in zip(names, rx_m.round(3), strict=True):
+        named.setdefault(tuple(position), []).append(name)
     for index, position in enumerate(transmitters, start=1):
-        _name_outwards(axes, "Tx" if len(transmitters) == 1 else f"Tx {index}", position, middle)
+        named.setdefault(tuple(position), []).append("Tx" if len(transmitters) == 1 else f"Tx {index}")
+    for place, here in named.items():
+        _name_outwards(axes, ", ".join(here), np.array(place), middle)
 
 
 def _name_outwards(axes: Axes, name: str, position: NDArray[np.float64], middle: NDArray[np.float64]) -> None:

@@ -69,9 +69,10 @@ def node_by_name(result: RunResult, name: str) -> NodeRecording:
 
 
 def echo_delay_s(node: NodeRecording, position_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the delay Tx -> position (n, 2) -> Rx as (n,) [s], in the plane."""
-    tx_m = np.asarray(node.tx_position_m, dtype=np.float64)[:2]
-    rx_m = np.asarray(node.rx_position_m, dtype=np.float64)[:2]
+    """Return the delay Tx -> position (n, 2) or (n, 3) -> Rx as (n,) [s], in the plane or in space."""
+    dimension = position_m.shape[-1]
+    tx_m = np.asarray(node.tx_position_m, dtype=np.float64)[:dimension]
+    rx_m = np.asarray(node.rx_position_m, dtype=np.float64)[:dimension]
     path_m = np.linalg.norm(position_m - tx_m, axis=-1) + np.linalg.norm(position_m - rx_m, axis=-1)
     return np.asarray(path_m / SPEED_OF_LIGHT_MPS)
 
@@ -101,6 +102,14 @@ def area_outline_m(site: Site) -> NDArray[np.float64]:
     return np.asarray(site.area, dtype=np.float64).reshape(-1, 2)
 
 
+def area_corners_m(site: Site) -> NDArray[np.float64]:
+    """Return the corners of the watched area (n, 2) or box (2 n, 3) [m]."""
+    outline = area_outline_m(site)
+    if site.heights_m is None:
+        return outline
+    return np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in site.heights_m])
+
+
 def truth_path_m(site: Site) -> NDArray[np.float64] | None:
     """Return the path (n, 2) [m] that the site says was walked, None when it says nothing."""
     return None if site.truth is None else np.asarray(site.truth.path_m, dtype=np.float64).reshape(-1, 2)
@@ -108,16 +117,33 @@ def truth_path_m(site: Site) -> NDArray[np.float64] | None:
 
 def behind_wall(result: RunResult) -> bool:
     """Whether the run's people are behind a wall."""
+    return _is_behind_wall(result.site)
+
+
+def in_space(result: RunResult) -> bool:
+    """Whether the run's positions have a height."""
     from echofuse.site import PIPELINES
 
     kind = PIPELINES.get(result.site.pipeline)
+    return kind is not None and kind.dimension == 3
+
+
+def _is_behind_wall(site: Site) -> bool:
+    from echofuse.site import PIPELINES
+
+    kind = PIPELINES.get(site.pipeline)
     return kind is not None and kind.behind_wall
 
 
 def tracker_name(result: RunResult) -> str:
-    """Return what the site's tracker is called in tables and legends."""
-    settings = result.site.settings
-    if behind_wall(result):
+    """Return what the run's tracker is called in tables and legends."""
+    return tracker_of(result.site)
+
+
+def tracker_of(site: Site) -> str:
+    """Return what a site's tracker is called."""
+    settings = site.settings
+    if _is_behind_wall(site):
         return "Path tracker" if settings.get("track_aided", True) else "Kalman filter"
     names = {"phd": "PHD filter", "kalman": "Kalman filter", "range": "Path tracker"}
     return names.get(str(settings.get("tracker", "phd")), "Tracker")
@@ -125,4 +151,6 @@ def tracker_name(result: RunResult) -> str:
 
 def baseline_name(result: RunResult) -> str:
     """Return what the simpler way beside it is called."""
+    if in_space(result):
+        return "Pairing, TSM, then Kalman"
     return "Pairing, then Kalman" if behind_wall(result) else "Kalman baseline"
