@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from echofuse.cli import CASES
 from echofuse.display.progress import progress
 from echofuse.errors import InputError, problem
 from echofuse.recording import Recording
@@ -19,12 +20,16 @@ def site_of_case(case: str, people: int | None) -> tuple[Site, str, int]:
     if case == "sensor-radar":
         n_people = 1 if people is None else people
         return example_site("sensor_radar" if n_people <= 1 else "sensor_radar_several"), case, n_people
+    if case == "stairs":
+        if people not in (None, 1):
+            raise InputError(problem("--people", "", "1 on the stairs", people))
+        return example_site("stairs"), case, 1
     if case == "through-wall":
         site, name = example_site("through_wall"), case
     else:
         path = Path(case)
         if path.suffix != ".toml":
-            cases = "a case (sensor-radar, through-wall) or a site file (SITE.toml)"
+            cases = f"a case ({', '.join(CASES)}) or a site file (SITE.toml)"
             raise InputError(problem(case, "", cases))
         site, name = load_site(path), path.stem
     if not PIPELINES[site.pipeline].behind_wall:
@@ -56,6 +61,7 @@ def _around(site: Site, case: str, people: int, seed: int, duration_s: float | N
 
 
 def _behind_wall(site: Site, case: str, people: int, seed: int, duration_s: float | None) -> Recording:
+    from echofuse.simulation.stairs import climb_s, stairs_climber, stairs_scene
     from echofuse.simulation.through_wall import simulate_through_wall
     from echofuse.simulation.through_wall_scene import (
         CASE_STUDY_DURATION_S,
@@ -64,12 +70,19 @@ def _behind_wall(site: Site, case: str, people: int, seed: int, duration_s: floa
     )
     from echofuse.simulation.through_wall_site import site_scene_behind_wall, site_walkers_behind_wall
 
+    default_s = CASE_STUDY_DURATION_S
     if case == "through-wall":
         scene, walkers = through_wall_scene(), case_study_walkers(people)
+    elif case == "stairs":
+        scene, walkers = stairs_scene(), (stairs_climber(),)
+        default_s = climb_s(walkers[0])
     else:
         scene = site_scene_behind_wall(site)
         walkers = site_walkers_behind_wall(scene, people)
-    duration_s = _whole_scans(duration_s, CASE_STUDY_DURATION_S, scene.scan_period_s)
+        if not all(scene.holds(person) for person in walkers):
+            expected = "room for the people who are simulated, their width and 1.9 m of height"
+            raise InputError(problem(site.name, "site.area", expected))
+    duration_s = _whole_scans(duration_s, default_s, scene.scan_period_s)
     return simulate_through_wall(scene, walkers, seed=seed, duration_s=duration_s, progress=_simulating)
 
 

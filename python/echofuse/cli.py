@@ -9,7 +9,8 @@ from pathlib import Path
 from echofuse import __version__
 from echofuse.errors import InputError, TargetError
 
-CASES = ("sensor-radar", "through-wall")
+CASES = ("sensor-radar", "through-wall", "stairs")
+CONFORMED = ("sensor-radar", "through-wall")
 TARGETS = ("inprocess", "process", "cortex-m7")
 TARGET = "TARGET"
 
@@ -28,10 +29,15 @@ def build_parser() -> argparse.ArgumentParser:
     run.add_argument("--seed", type=_natural, default=0, help="of everything random (default 0)")
     run.add_argument("--seeds", type=_seed_range, help="FIRST-LAST: a table over many seeds, no report")
     run.add_argument(
-        "--people", type=_people, help="how many people walk, 0 to 5 (default 1); behind a wall 0 to 4 (2)"
+        "--people",
+        type=_people,
+        help="how many people walk, 0 to 5 (default 1); behind a wall 0 to 4 (2); on the stairs 1",
     )
     run.add_argument(
-        "--duration", type=_positive, metavar="SECONDS", help="of the walk (default: 6.1; behind a wall 60)"
+        "--duration",
+        type=_positive,
+        metavar="SECONDS",
+        help="of the walk (default: 6.1; behind a wall 60; a climb 24)",
     )
     run.add_argument("--out", type=Path, help="folder of the run (default runs/CASE-SEED)")
     run.add_argument("--no-report", action="store_true", help="tables only, no pictures")
@@ -59,7 +65,7 @@ def build_parser() -> argparse.ArgumentParser:
     import_.add_argument("--out", type=Path, required=True, help="the HDF5 file to write")
 
     conform = commands.add_parser("conform", help="compare a target with the NumPy reference, tap by tap")
-    conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CASES)} (default: all)")
+    conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CONFORMED)} (default: all)")
     conform.add_argument(
         "--target", type=_target, metavar=TARGET, default="inprocess", help="what is compared"
     )

@@ -14,6 +14,7 @@ from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display import setting
 from echofuse.display.health import health_lines
 from echofuse.display.progress import progress
+from echofuse.display.ways import WAYS, is_of_a_way, way_lines
 from echofuse.errors import InputError, problem
 from echofuse.pipeline import check_positions, process_recording
 from echofuse.recording import Recording, read, write
@@ -41,6 +42,16 @@ SEED_COLUMNS = {
         "ghosts_per_response",
         "paired_ghosts_per_response",
         "all_pairs_ghosts_per_response",
+    ),
+    "through_wall_3d": (
+        "rmse_m",
+        "bound_ratio",
+        "tracked_fraction",
+        "one_track_fraction",
+        "cuboid_fraction",
+        "false_tracks_per_100_s",
+        "position_error_bound_m",
+        *(f"{way}_{of}_rmse_m" for way in WAYS for of in ("points", "track")),
     ),
 }
 TRACK_STATES = ("unconfirmed", "confirmed", "silent")
@@ -234,6 +245,9 @@ def _run_seeds(options: Namespace) -> int:
         print(f"{seed:4d}  " + _cells(result.metrics, columns))
     for label, table in (("mean", rows), ("KF  ", baselines)):
         print(f"{label}  " + _cells({column: _mean(table, column) for column in columns}, columns))
+    means = {name: _mean(rows, name) for name in rows[0]}
+    for line in way_lines(means, setting.tracker_of(site)):
+        print(line)
     if options.out:
         _make_folder(options.out)
         _write_json(
@@ -276,10 +290,12 @@ def _finish(result: RunResult, folder: Path, *, report: bool) -> int:
         print(f"{len(result.detections)} ranges in observations.csv")
     beside_name = setting.baseline_name(result)
     for name, value in result.metrics.items():
+        if is_of_a_way(name):
+            continue
         baseline = result.baseline_metrics.get(name)
         beside = "" if baseline is None else f"   ({beside_name} {baseline:.4g})"
         print(f"{name:32s} {value:10.4g}{beside}")
-    for line in health_lines(result):
+    for line in (*way_lines(result.metrics, setting.tracker_of(result.site)), *health_lines(result)):
         print(line)
     if report:
         from echofuse.display.report import write_report
