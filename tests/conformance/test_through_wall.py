@@ -169,7 +169,7 @@ def possible_words() -> dict[str, set[str]]:
 
 def test_every_choice_of_every_stage_is_conformed() -> None:
     words = possible_words()
-    assert set(words) == {"clutter.method", "envelope.method", "gaussian_cfar.spread"}
+    assert set(words) == {"clutter.method", "envelope.method", "gaussian_cfar.spread", "leading_edge.rule"}
     for key, others in words.items():
         conformed = {choice.settings[key] for choice in THROUGH_WALL_NODE_CHOICES if key in choice.settings}
         assert conformed == others, key

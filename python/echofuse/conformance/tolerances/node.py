@@ -25,6 +25,9 @@ ROWS: dict[str, Tolerance] = {
     "node.time_zero": Tolerance(0.0, 1e-4, "[sample] a parabola over a mean of ten responses in float32"),
     "node.weak_signal": Tolerance(1e-6, 0.0, "one quotient, and a noise of sums in float32"),
     "node.leading_edge": Tolerance(1e-6, 2e-6, "[sample] a quotient of differences in float32"),
+    "node.largest_step": Tolerance(
+        0.0, 1e-3, "[sample] a parabola of differences of sums of up to 1400 samples in float32"
+    ),
     "node.target_trace": Tolerance(1e-6, 0.0, "[sample] one quotient in float32"),
     "node.range_cluster.position": Tolerance(
         1e-7, 2e-4, "[sample] two differences of float32 squares near 1"

@@ -24,8 +24,8 @@ class LeadingEdges(NamedTuple):
 def leading_edge(envelope: Samples, toa_samples: Samples, config: LeadingEdgeConfig) -> LeadingEdges:
     """Move each trace (n_traces,) [sample] to where its echo begins in envelope (n,) [count].
 
-    Searched are the samples from `before_samples` before the trace to `after_samples` behind it. A trace whose
-    window lies outside, or holds nothing, stays.
+    Searched are the samples from `before_samples` before the trace to `after_samples` behind it. A trace
+    whose window lies outside, or holds nothing, stays.
     """
     moved, margin = toa_samples.copy(), np.inf
     for which, toa in enumerate(toa_samples):
@@ -57,19 +57,18 @@ def first_above(window: Samples, level: float) -> tuple[float, float]:
 def largest_step(envelope: Samples, first: int, last: int, mean_samples: int) -> tuple[float, float]:
     """Return the place in [first, last] with the largest step, a parabola between samples, and the margin.
 
-    The step at k is the mean of envelope (n,) from k on less that before k, 0 outside. The margin is that over
-    the largest step which is no neighbour's: between neighbours the place is continuous.
+    The step at k is the mean of envelope (n,) from k on less that before k; outside the envelope is 0. From
+    one neighbour to the next the parabola's place is continuous, so only others can change it by much.
     """
-    padded = np.pad(envelope, mean_samples)
-    means = np.convolve(padded, np.full(mean_samples, 1.0 / mean_samples), "valid")  # of those from k - mean_samples on
+    means = np.convolve(np.pad(envelope, mean_samples), np.full(mean_samples, 1.0 / mean_samples), "valid")
     steps = (means[mean_samples:] - means[:-mean_samples])[first : last + 1]
     best = int(np.argmax(steps))
-    elsewhere = np.abs(np.arange(len(steps)) - best) > 1
-    next_best = float(np.max(steps[elsewhere], initial=-np.inf))
+    inside = 0 < best < len(steps) - 1
+    others = np.abs(np.arange(len(steps)) - best) > (1 if inside else 0)
+    next_best = float(np.max(steps[others], initial=-np.inf))
     margin = (float(steps[best]) - next_best) / float(np.max(envelope[first : last + 1]))
-    if best in (0, len(steps) - 1):
-        at_edge = float(np.max(np.diff(np.sort(steps)[-2:]), initial=0.0)) if len(steps) > 1 else 1.0
-        return float(first + best), min(margin, at_edge / float(np.max(envelope[first : last + 1])))
-    before, largest, behind = steps[best - 1 : best + 2]
+    if not inside:
+        return float(first + best), margin
+    before, largest, behind = (float(step) for step in steps[best - 1 : best + 2])
     curvature = before - 2.0 * largest + behind
-    return first + best + float(0.5 * (before - behind) / curvature if curvature < 0.0 else 0.0), margin
+    return first + best + (0.5 * (before - behind) / curvature if curvature < 0.0 else 0.0), margin
