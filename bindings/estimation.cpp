@@ -7,6 +7,7 @@
 #include "echofuse/estimation/kalman.hpp"
 #include "echofuse/estimation/mixture_em.hpp"
 #include "echofuse/estimation/resampling.hpp"
+#include "echofuse/estimation/turning_filter.hpp"
 #include "particles.hpp"
 
 namespace echofuse::bindings {
@@ -18,6 +19,7 @@ using estimation::MixtureComponent;
 using estimation::MixtureConfig;
 using estimation::MixtureFitter;
 using estimation::PeakInitialisation;
+using estimation::TurningFilter;
 
 template <class Matrix>
 py::array_t<float> matrix_to_array(const Matrix& matrix) {
@@ -116,6 +118,40 @@ void bind_kalman(py::module_& m, const char* name, const char* documentation) {
                              [](const Filter& self) { return matrix_to_array(self.covariance()); });
 }
 
+template <int kDimension>
+void bind_turning_filter(py::module_& m, const char* name, const char* documentation) {
+  using Filter = TurningFilter<kDimension>;
+  using State = typename Filter::State;
+  using Vector = typename Filter::Vector;
+  py::class_<Filter>(m, name, documentation)
+      .def(py::init([](const FloatArray& state, const FloatArray& covariance, bool turns) {
+             return Filter({array_to_vector<State>(state, "state"),
+                            array_to_matrix<typename Filter::Covariance>(covariance, "covariance")},
+                           turns);
+           }),
+           py::arg("state").noconvert(), py::arg("covariance").noconvert(), py::arg("turns"))
+      .def(
+          "predict",
+          [](Filter& self, float dt_s, float straight, float turning, float begin, float end, float decay) {
+            self.predict(dt_s, {straight, turning, begin, end}, decay);
+          },
+          py::arg("dt_s"), py::arg("straight_density_m2ps3"), py::arg("turning_density_m2ps3"),
+          py::arg("begin_probability"), py::arg("end_probability"), py::arg("velocity_decay") = 1.0f)
+      .def(
+          "update_along",
+          [](Filter& self, const FloatArray& direction, float innovation_m, float variance_m2) {
+            self.update_along(array_to_vector<Vector>(direction, "direction"), innovation_m, variance_m2);
+          },
+          py::arg("direction").noconvert(), py::arg("innovation_m"), py::arg("variance_m2"))
+      .def("hold", &Filter::hold, py::arg("axis"), py::arg("low_m"), py::arg("high_m"))
+      .def_property_readonly(
+          "state",
+          [](const Filter& self) { return to_array(Span<const float>(self.state().data(), 2 * kDimension)); })
+      .def_property_readonly("covariance",
+                             [](const Filter& self) { return matrix_to_array(self.covariance()); })
+      .def_property_readonly("turning_probability", &Filter::turning_probability);
+}
+
 void bind_mixture(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(MixtureComponent, x_m, y_m, vx_mps, vy_mps, covariance_xx_m2, covariance_xy_m2,
                        covariance_yy_m2, share);
@@ -170,6 +206,8 @@ void bind_estimation(py::module_& m) {
   bind_functions(m);
   bind_kalman<2>(m, "ConstantVelocityFilter", "State x, vx, y, vy and its covariance.");
   bind_kalman<3>(m, "ConstantVelocityFilter3d", "State x, vx, y, vy, z, vz and its covariance.");
+  bind_turning_filter<2>(m, "TurningFilter", "ConstantVelocityFilter of one who walks straight, or turns.");
+  bind_turning_filter<3>(m, "TurningFilter3d", "ConstantVelocityFilter3d of one who walks straight, or turns.");
   bind_mixture(m);
 }
 

@@ -46,6 +46,12 @@ void bind_path_tracker_config(py::module_& m) {
       .field("merge_distance_m", &PathTrackerConfig::merge_distance_m, "[m] two that are one person, >= 0")
       .field("merge_speed_mps", &PathTrackerConfig::merge_speed_mps, "[m/s] and as fast, >= 0")
       .field("max_tracks", &PathTrackerConfig::max_tracks)
+      .field("turn_density_m2ps3", &PathTrackerConfig::turn_density_m2ps3,
+             "[m^2/s^3] velocity variance gained by one who turns, >= 0; 0: nobody does")
+      .field("turn_begin_probability", &PathTrackerConfig::turn_begin_probability,
+             "[1] that somebody begins to turn in one response, in (0, 1)")
+      .field("turn_end_probability", &PathTrackerConfig::turn_end_probability,
+             "[1] that somebody who turns walks straight on in the next, in (0, 1)")
       .field("path_std_growth", &PathTrackerConfig::path_std_growth,
              "[1/m] of both path deviations beyond 4 m, >= 0")
       .field("body_half_height_m", &PathTrackerConfig::body_half_height_m, "[m] in space, >= 0; 0: a ball");

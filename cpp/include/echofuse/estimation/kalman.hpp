@@ -47,6 +47,9 @@ class ConstantVelocityFilter {
   /// predicted value, variance_m2 > 0 that of its error (an extended Kalman filter's scalar update).
   void update_along(const Vector& direction, float innovation_m, float variance_m2);
 
+  /// Keeps a coordinate within limits [m]; who reaches one stops there. Whether it had to.
+  bool hold(int axis, float low_m, float high_m);
+
   const State& state() const { return state_; }
   const Covariance& covariance() const { return covariance_; }
   Vector position() const { return state_(positions()); }                                           ///< [m]

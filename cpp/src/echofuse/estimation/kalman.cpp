@@ -1,6 +1,7 @@
 #include "echofuse/estimation/kalman.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace echofuse::estimation {
 
@@ -83,6 +84,15 @@ void ConstantVelocityFilter<kDimension>::update_along(const Vector& direction, f
   state_ += gain * innovation_m;
   const Covariance updated = rest * covariance_ * rest.transpose() + variance_m2 * gain * gain.transpose();
   covariance_ = 0.5f * (updated + updated.transpose());
+}
+
+template <int kDimension>
+bool ConstantVelocityFilter<kDimension>::hold(int axis, float low_m, float high_m) {
+  const float at = state_(2 * axis);
+  if (at >= low_m && at <= high_m) return false;
+  state_(2 * axis) = std::clamp(at, low_m, high_m);
+  state_(2 * axis + 1) = 0.0f;
+  return true;
 }
 
 template class ConstantVelocityFilter<2>;

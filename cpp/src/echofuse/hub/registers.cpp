@@ -45,7 +45,8 @@ constexpr link::RegisterField of_each_node(link::RegisterField field) {
       FIELD(path_tracker.silent_time_s), FIELD(path_tracker.silent_velocity_time_s),                        \
       FIELD(path_tracker.birth_exclusion_m), FIELD(path_tracker.merge_distance_m),                          \
       FIELD(path_tracker.merge_speed_mps), FIELD(path_tracker.max_tracks),                                  \
-      FIELD(path_tracker.path_std_growth), FIELD(path_tracker.body_half_height_m)
+      FIELD(path_tracker.turn_density_m2ps3), FIELD(path_tracker.turn_begin_probability),  \
+      FIELD(path_tracker.turn_end_probability), FIELD(path_tracker.path_std_growth), FIELD(path_tracker.body_half_height_m)
 #define TRACK_FIELDS                                                                                   \
   FIELD(tracks.association), FIELD(tracks.update), FIELD(tracks.gate_m), FIELD(tracks.cost_max_m),     \
       FIELD(tracks.gate_sigma), FIELD(tracks.silent_gate_growth_mps), FIELD(tracks.silent_gate_max_m), \

@@ -9,6 +9,9 @@ ROWS: dict[str, Tolerance] = {
     "estimation.assignment.cost": Tolerance(1e-6, 0.0, "32 costs, summed and compared in float32"),
     "estimation.kalman.state": Tolerance(3e-6, 1e-6, "40 updates of up to 6 x 6 products in float32"),
     "estimation.kalman.covariance": Tolerance(1e-5, 0.0, "40 Joseph updates of up to 6 x 6, in float32"),
+    "estimation.turning.state": Tolerance(1e-5, 1e-5, "240 updates of two filters, mixed, in float32"),
+    "estimation.turning.covariance": Tolerance(1e-4, 0.0, "240 updates of two filters, mixed, in float32"),
+    "estimation.turning.probability": Tolerance(0.0, 1e-4, "240 quotients of exponentials in float32"),
     "estimation.mixture.position": Tolerance(
         0.0, 1e-4, "[m] a sum over 600 particles, 20 m from the origin, a step"
     ),

@@ -73,3 +73,9 @@ class ConstantVelocityFilter:
         rest = np.eye(len(self.state)) - np.outer(gain, shown)
         self.state = self.state + gain * innovation_m
         self.covariance = rest @ self.covariance @ rest.T + variance_m2 * np.outer(gain, gain)
+
+    def hold(self, axis: int, low_m: float, high_m: float) -> None:
+        """Keep a coordinate within limits [m]; who reaches one stops there."""
+        if not low_m <= self.state[2 * axis] <= high_m:
+            self.state[2 * axis] = np.clip(self.state[2 * axis], low_m, high_m)
+            self.state[2 * axis + 1] = 0.0

@@ -22,6 +22,8 @@ CASES = {
     "plane, growing deviations": (2, {"path_std_growth": 0.3}, 0.0),
     "points in space": (3, {}, 0.0),
     "balls": (3, {}, 0.21),
+    "somebody who turns": (2, {"turn_density_m2ps3": 2.0, "turn_begin_probability": 0.02}, 0.0),
+    "space, somebody who turns": (3, {"turn_density_m2ps3": 2.0, "acceleration_density_m2ps3": 0.01}, 0.21),
     "upright bodies": (3, {"body_half_height_m": 0.8, "path_std_growth": 0.1}, 0.21),
     "upright bodies in the open": (3, {"body_half_height_m": 0.8}, 0.21),
 }

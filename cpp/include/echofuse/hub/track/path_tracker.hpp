@@ -9,7 +9,7 @@
 #include "echofuse/core/limits.hpp"
 #include "echofuse/core/span.hpp"
 #include "echofuse/core/status.hpp"
-#include "echofuse/estimation/kalman.hpp"
+#include "echofuse/estimation/turning_filter.hpp"
 #include "echofuse/hub/locate/wall.hpp"
 #include "echofuse/hub/measure/frame.hpp"
 #include "echofuse/link/messages.hpp"
@@ -35,6 +35,9 @@ struct PathTrackerConfig {
   float merge_speed_mps = 0.6f;         ///< [m/s] and as fast, are one person, >= 0
   int max_tracks = 10;                  ///< in [1, kMaxTracks]
   float path_std_growth = 0.0f;         ///< [1/m] of both path deviations, beyond 4 m of the mean path, >= 0
+  float turn_density_m2ps3 = 0.0f;      ///< [m^2/s^3] velocity variance gained by one who turns, >= 0; 0: nobody does
+  float turn_begin_probability = 0.005f;  ///< [1] that somebody begins to turn in one response, in (0, 1)
+  float turn_end_probability = 0.05f;     ///< [1] that somebody who turns walks straight on in the next, in (0, 1)
   float body_half_height_m = 0.0f;      ///< [m] of an upright body, in space alone, >= 0; 0: a ball
 };
 
@@ -51,11 +54,11 @@ const char* invalid_field(const PathTrackerConfig& config);
 /// the gradient of the middle's path. Reference: python/echofuse/reference/hub/track/path_tracker.py
 template <int kDimension>
 class PathTracker {
-  using Filter = estimation::ConstantVelocityFilter<kDimension>;
+  using Filter = estimation::TurningFilter<kDimension>;
 
  public:
   using Vector = typename Filter::Vector;                          ///< [m] x, y, and in space z
-  using PositionCovariance = typename Filter::PositionCovariance;  ///< [m^2]
+  using PositionCovariance = typename Filter::Filter::PositionCovariance;  ///< [m^2]
 
   /// rx_m: (n,) kDimension <= n <= kMaxArrayReceivers, y = 0, all different and none at the transmitter. least_m, most_m:
   /// corners of where a person's middle can be, behind the antennas. body_radius_m: in space, a >= 0, of which update()'s

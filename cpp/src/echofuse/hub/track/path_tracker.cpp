@@ -57,6 +57,10 @@ int count_bits(std::uint32_t bits) {
 
 const char* invalid_field(const PathTrackerConfig& config) {
   if (!positive(config.acceleration_density_m2ps3)) return "acceleration_density_m2ps3";
+  if (!not_negative(config.turn_density_m2ps3)) return "turn_density_m2ps3";
+  if (!(config.turn_begin_probability > 0.0f && config.turn_begin_probability < 1.0f))
+    return "turn_begin_probability";
+  if (!(config.turn_end_probability > 0.0f && config.turn_end_probability < 1.0f)) return "turn_end_probability";
   if (!positive(config.velocity_std_mps)) return "velocity_std_mps";
   if (!positive(config.path_std_m)) return "path_std_m";
   if (!not_negative(config.common_path_std_m)) return "common_path_std_m";
@@ -172,8 +176,9 @@ Status PathTracker<kDimension>::begin(const Vector& position_m, const PositionCo
   TrackState track;
   track.id = next_id_++;
   track.confirmed = config_.confirm_updates <= 1;
-  track.filter = Filter::at(position_m, covariance_m2 + shared * PositionCovariance::Identity(),
-                            Vector::Zero(), config_.velocity_std_mps);
+  const PositionCovariance covariance_here_m2 = covariance_m2 + shared * PositionCovariance::Identity();
+  track.filter = {Filter::Filter::at(position_m, covariance_here_m2, Vector::Zero(), config_.velocity_std_mps),
+                  config_.turn_density_m2ps3 > 0.0f};
   ECHOFUSE_CHECK(tracks_.try_push_back(track));
   return Status::kOk;
 }
@@ -184,7 +189,7 @@ void PathTracker<kDimension>::report(link::Tracks& tracks) const {
   for (const TrackState& track : tracks_) {
     const auto seen = track.misses == 0 ? link::TrackState::kConfirmed : link::TrackState::kSilent;
     ECHOFUSE_CHECK(tracks.tracks.try_push_back(to_message(
-        track.id, track.confirmed ? seen : link::TrackState::kUnconfirmed, track.misses, track.filter)));
+        track.id, track.confirmed ? seen : link::TrackState::kUnconfirmed, track.misses, track.filter.mixture())));
   }
 }
 
@@ -206,17 +211,12 @@ template <int kDimension>
 void PathTracker<kDimension>::predict(float dt_s) {
   const float fade =
       config_.silent_velocity_time_s > 0.0f ? std::exp(-dt_s / config_.silent_velocity_time_s) : 0.0f;
+  const estimation::TurningMotion motion{config_.acceleration_density_m2ps3, config_.turn_density_m2ps3,
+                                         config_.turn_begin_probability, config_.turn_end_probability};
   for (TrackState& track : tracks_) {
     const bool silent = track.confirmed && track.misses > 0;
-    track.filter.predict(dt_s, config_.acceleration_density_m2ps3, silent ? fade : 1.0f);
-    typename Filter::State state = track.filter.state();
-    for (int axis = 0; axis < kDimension; ++axis) {
-      float& position = state(2 * axis);
-      if (position >= least_m_(axis) && position <= most_m_(axis)) continue;
-      position = std::clamp(position, least_m_(axis), most_m_(axis));
-      state(2 * axis + 1) = 0.0f;
-    }
-    track.filter = {state, track.filter.covariance()};
+    track.filter.predict(dt_s, motion, silent ? fade : 1.0f);
+    for (int axis = 0; axis < kDimension; ++axis) track.filter.hold(axis, least_m_(axis), most_m_(axis));
   }
 }
 

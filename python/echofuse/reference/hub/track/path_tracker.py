@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from echofuse.reference.estimation.kalman import ConstantVelocityFilter
+from echofuse.reference.estimation.turning_filter import TurningFilter
 from echofuse.reference.hub.locate.taylor_3d import leg
 from echofuse.reference.hub.locate.wall import WallConfig
 from echofuse.reference.hub.track.track_manager import CONFIRMED, SILENT, UNCONFIRMED
@@ -48,13 +49,16 @@ class PathTrackerConfig(Protocol):
     merge_speed_mps: float
     max_tracks: int
     path_std_growth: float
+    turn_density_m2ps3: float
+    turn_begin_probability: float
+    turn_end_probability: float
     body_half_height_m: float
 
 
 @dataclass
 class PathTrack:
     id: int
-    filter: ConstantVelocityFilter
+    filter: ConstantVelocityFilter | TurningFilter
     confirmed: bool
     updates: list[bool] = field(
         default_factory=lambda: [True]
@@ -173,7 +177,8 @@ class PathTracker:
         covariance = covariance_m2 + c.common_path_std_m**2 / 4.0 * np.eye(self.dimension)
         at_rest = np.zeros(self.dimension)
         begun = ConstantVelocityFilter.at(position_m, covariance, at_rest, c.velocity_std_mps)
-        self.tracks.append(PathTrack(self.next_id, begun, confirmed=c.confirm_updates <= 1))
+        filter = TurningFilter(begun) if c.turn_density_m2ps3 > 0.0 else begun
+        self.tracks.append(PathTrack(self.next_id, filter, confirmed=c.confirm_updates <= 1))
         self.next_id += 1
         return True
 
@@ -204,13 +209,15 @@ class PathTracker:
         c = self.config
         fade = np.exp(-dt_s / c.silent_velocity_time_s) if c.silent_velocity_time_s > 0.0 else 0.0
         for track in self.tracks:
-            silent = track.state == SILENT
-            track.filter.predict(dt_s, c.acceleration_density_m2ps3, float(fade) if silent else 1.0)
+            decay = float(fade) if track.state == SILENT else 1.0
+            if isinstance(track.filter, TurningFilter):
+                densities = c.acceleration_density_m2ps3, c.turn_density_m2ps3
+                changes = c.turn_begin_probability, c.turn_end_probability
+                track.filter.predict(dt_s, densities, *changes, decay)
+            else:
+                track.filter.predict(dt_s, c.acceleration_density_m2ps3, decay)
             for axis in range(self.dimension):
-                low, high = self.area_m[axis], self.area_m[axis + self.dimension]
-                if not low <= track.filter.state[2 * axis] <= high:
-                    track.filter.state[2 * axis] = np.clip(track.filter.state[2 * axis], low, high)
-                    track.filter.state[2 * axis + 1] = 0.0
+                track.filter.hold(axis, self.area_m[axis], self.area_m[axis + self.dimension])
 
     def _share_out(
         self, tracks: list[PathTrack], paths_m: list[Array], owners: list[NDArray[np.int64]]
