@@ -7,6 +7,7 @@
 #include "echofuse/hub/hub.hpp"
 #include "echofuse/hub/registers.hpp"
 #include "echofuse/hub/through_wall.hpp"
+#include "echofuse/hub/through_wall_3d.hpp"
 #include "echofuse/link/messages.hpp"
 #include "echofuse/link/register_server.hpp"
 
@@ -65,6 +66,42 @@ struct ThroughWall {
             c.reports.absent,   c.reports.slow,           c.couples,
             c.unlocated,        c.outside_area,           c.dropped_points,
             c.dropped_births,   c.dropped_combinations,   c.clock_faults,
+            undecodable};
+  }
+};
+
+struct ThroughWall3d {
+  using Hub = hub::ThroughWall3dHub;
+  using Config = hub::ThroughWall3dHubConfig;
+  static constexpr link::MachineKind kKind = link::MachineKind::kThroughWall3dHub;
+  static constexpr bool kSpatial = true;
+  static constexpr const char* kName = "echofuse.through_wall_3d.hub";
+
+  static Span<const link::RegisterField> registers() { return hub::through_wall_3d_registers(); }
+
+  /// In the order of docs/link_protocol.md. undecodable: of the firmware itself.
+  static std::array<std::uint32_t, 21> counted(const hub::ThroughWall3dHubCounters& c,
+                                               std::uint32_t undecodable) {
+    return {c.reports.accepted,
+            c.reports.late,
+            c.reports.early,
+            c.reports.doubled,
+            c.reports.malformed,
+            c.reports.unknown_node,
+            c.reports.lost,
+            c.reports.resynchronised,
+            c.reports.frames,
+            c.reports.absent,
+            c.reports.slow,
+            c.couples,
+            c.quads,
+            c.clipped,
+            c.unlocated,
+            c.outside_area,
+            c.dropped_points,
+            c.dropped_births,
+            c.dropped_combinations,
+            c.clock_faults,
             undecodable};
   }
 };

@@ -22,10 +22,12 @@ from echofuse.simulation.through_wall_scene import case_study_walkers, through_w
 from echofuse.site import Site, example_site
 
 SITE, BEFORE_A_WALL = example_site("sensor_radar"), example_site("through_wall")
+BESIDE_STAIRS = example_site("stairs")
 PERIOD_US = 100_000
 RESPONSE_PERIOD_US = 74_000
 THROUGH_WALL_S = 9.0  # in which both people walk, meet and turn
 STAIRS_S = 4.5  # from the lower floor to the middle of the first flight
+CLIMB_S = 12.0  # and on, across the landing
 
 
 @dataclass
@@ -61,9 +63,9 @@ def through_wall_case_study() -> Recording:
 
 
 @cache
-def stairs() -> Recording:
+def stairs(duration_s: float = STAIRS_S) -> Recording:
     """One person on the stairs."""
-    return simulate_stairs(stairs_scene(), seed=0, duration_s=STAIRS_S)
+    return simulate_stairs(stairs_scene(), seed=0, duration_s=duration_s)
 
 
 def sensor_radar_node() -> NodeFeed:
@@ -97,6 +99,11 @@ def stairs_node(kept_samples: int) -> NodeFeed:
 def through_wall_hub() -> HubFeed:
     """Return what the case study's two receivers report."""
     return _reports(BEFORE_A_WALL, through_wall_case_study(), RESPONSE_PERIOD_US)
+
+
+def through_wall_3d_hub() -> HubFeed:
+    """Return what the stairs' four receivers report."""
+    return _reports(BESIDE_STAIRS, stairs(CLIMB_S), RESPONSE_PERIOD_US)
 
 
 def _first_node(site: Site, recording: Recording, period_us: int) -> NodeFeed:
@@ -150,12 +157,21 @@ def traces_at_random(n_receivers: int, n_frames: int = 12) -> HubFeed:
     config = _core.ThroughWallHubConfig()
     config.set_nodes(list(range(1, n_receivers + 1)), np.zeros_like(rx_m), rx_m)
     config.set_area(-2.35, 0.48, 2.35, 6.10)
+    return _full_of_anything(config, random, n_frames)
+
+
+def cross_at_random(n_frames: int = 12) -> HubFeed:
+    """The stairs' four receivers, likewise."""
+    return _full_of_anything(hub_config(BESIDE_STAIRS), np.random.default_rng(5), n_frames)
+
+
+def _full_of_anything(config: Any, random: np.random.Generator, n_frames: int) -> HubFeed:
     feed = HubFeed(config, [], RESPONSE_PERIOD_US)
     for frame in range(n_frames):
         reports = b""
-        for node in range(n_receivers):
+        for node in config.nodes[: config.n_nodes]:
             delays_s = np.sort(random.uniform(1.2e-8, 4e-8, 16))
-            reports += _report(node + 1, frame, delays_s, np.full(16, 9), RESPONSE_PERIOD_US)
+            reports += _report(node.node_id, frame, delays_s, np.full(16, 9), RESPONSE_PERIOD_US)
         feed.frames.append(reports)
     return feed
 

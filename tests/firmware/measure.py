@@ -17,10 +17,12 @@ import numpy as np
 from material import (
     HubFeed,
     NodeFeed,
+    cross_at_random,
     crowd,
     sensor_radar_hub,
     sensor_radar_node,
     stairs_node,
+    through_wall_3d_hub,
     through_wall_hub,
     through_wall_node,
     traces_at_random,
@@ -46,12 +48,14 @@ FEEDS: dict[str, Callable[[], NodeFeed | HubFeed]] = {
     "sensor_radar_hub": sensor_radar_hub,
     "through_wall_node": through_wall_node,
     "through_wall_hub": through_wall_hub,
+    "through_wall_3d_hub": through_wall_3d_hub,
 }
 #: What else, the most instructions of which are measured; `worst_case`: that its capacities let in.
 OTHERS: dict[str, dict[str, Callable[[], NodeFeed | HubFeed]]] = {
     "sensor_radar_hub": {"worst_case": lambda: crowd(16, 16)},
     "through_wall_node": {"stairs": lambda: stairs_node(700), "worst_case": lambda: stairs_node(1920)},
     "through_wall_hub": {"worst_case": lambda: traces_at_random(2)},
+    "through_wall_3d_hub": {"worst_case": cross_at_random},
 }
 
 Figures = dict[str, int]
@@ -121,7 +125,8 @@ def measure(name: str) -> Figures:
 
 def instructions_together(hub: str, asked: dict[str, Any]) -> int:
     """Return the longest that nodes and hub take from raw samples to tracks, one after the other."""
-    return asked["nodes"] * measure(asked["node"])["instructions_max"] + measure(hub)["instructions_max"]
+    node = measure(asked["node"])[asked.get("of_node", "instructions_max")]
+    return asked["nodes"] * node + measure(hub)["instructions_max"]
 
 
 def heap_symbols(image: Path) -> list[str]:

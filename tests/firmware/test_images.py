@@ -65,8 +65,14 @@ def test_an_image_holds_its_own_pipeline_alone(entry: dict[str, Any]) -> None:
     listed = subprocess.run(
         ["arm-none-eabi-nm", image_of(entry)], check=True, capture_output=True, text=True
     ).stdout
-    held = {pipeline for pipeline in ("SensorRadar", "ThroughWall") if pipeline in listed}
-    assert held == {"ThroughWall" if entry["name"].startswith("through_wall") else "SensorRadar"}
+    pipelines = {
+        "sensor_radar": {"SensorRadar"},
+        "through_wall_node": {"ThroughWall"},
+        "through_wall_hub": {"ThroughWall", "ThroughWallHub"},
+        "through_wall_3d": {"ThroughWall", "ThroughWall3dHub"},
+    }
+    (expected,) = (held for name, held in pipelines.items() if entry["name"].startswith(name))
+    assert {pipeline for pipeline in set().union(*pipelines.values()) if pipeline in listed} == expected
 
 
 @pytest.mark.parametrize("entry", IMAGES, ids=names)

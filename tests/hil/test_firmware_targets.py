@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from ledger import Ledger
 
+from echofuse.cases import simulated
 from echofuse.cli import main
 from echofuse.emulation import codec
 from echofuse.emulation.firmware import HUB_ID, Machine
@@ -53,6 +54,25 @@ def test_every_decision_is_that_of_this_process(recording: Recording, target: st
     shared = set(here.counters["hub"]) & set(result.counters["hub"])
     assert {"accepted", "lost", "unknown_node", "frames"} <= shared
     assert {name: result.counters["hub"][name] for name in shared} == {
+        name: here.counters["hub"][name] for name in shared
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", FIRMWARE_TARGETS)
+def test_every_decision_in_space_is_that_of_this_process(target: str) -> None:
+    """The last seconds of 5 s are in the tables: the climber is tracked, and has a height."""
+    stairs = example_site("stairs")
+    climb = simulated(stairs, "stairs", 1, seed=0, duration_s=5.0)
+    there, here = process_recording(climb, stairs, target=target), process_recording(climb, stairs)
+    assert (there.metrics["scans_that_differ"], there.metrics["frames_that_differ"]) == (0, 0)
+    assert there.metrics["position_difference_m"] <= 1e-3
+    assert np.array_equal(there.outputs().frame_hash, here.outputs().frame_hash)
+    assert len(there.tracks) > 10
+    assert np.ptp(there.tracks["z_m"]) > 0.1
+    shared = set(here.counters["hub"]) & set(there.counters["hub"])
+    assert {"couples", "quads", "clipped", "unlocated", "outside_area"} <= shared
+    assert {name: there.counters["hub"][name] for name in shared} == {
         name: here.counters["hub"][name] for name in shared
     }
 

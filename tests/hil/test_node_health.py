@@ -499,12 +499,68 @@ OF_A_HUB_BEHIND_A_WALL: dict[str, Provocation] = {
     "dropped_combinations": searches_among_too_many,
 }
 
-NODE, HUB, NODE_BEHIND_A_WALL, HUB_BEHIND_A_WALL = range(4)
+
+# And one behind the cross of four receivers that the stairs have.
+
+
+def pairs_both_axes(hub: Machine, _: Recording) -> dict[str, int]:
+    """The first are a person's, whose track takes the others."""
+    hear(hub, listed(hub), 1, 2, 3)
+    return {"couples": 2, "quads": 1}
+
+
+def must_bend_paths(hub: Machine, _: Recording) -> dict[str, int]:
+    """Both axes say the same distance, and both that it is nearly all along them."""
+    left, right, low, high = listed(hub)
+    near, far = {"delay_s": (2e-8,)}, {"delay_s": (2.24e-8,)}
+    said = report(left, 1, **near) + report(right, 1, **far) + report(low, 1, **near) + report(high, 1, **far)
+    hub.step(FRAME_US, said)
+    return {"couples": 2, "quads": 1, "clipped": 1}
+
+
+def is_too_far_to_tell(hub: Machine, _: Recording) -> dict[str, int]:
+    """143 m away, steeply downwards, where the four paths hardly differ in what they say of a place."""
+    *level, high = listed(hub)
+    hub.step(FRAME_US, reports(level, 1, delay_s=(9.57e-7,)) + report(high, 1, delay_s=(9.59e-7,)))
+    return {"couples": 2, "quads": 1, "unlocated": 1}
+
+
+def locates_beyond_the_box(hub: Machine, _: Recording) -> dict[str, int]:
+    hear(hub, listed(hub), 1, delay_s=(5.5e-8,))
+    return {"couples": 2, "quads": 1, "outside_area": 1}
+
+
+def has_room_for_one_in_space(hub: Machine, _: Recording) -> dict[str, int]:
+    put_in_force(hub, {"path_tracker.max_tracks": 1})
+    hear(hub, listed(hub), 1, delay_s=(1.5e-8, 2.5e-8, 3.5e-8))
+    return {"couples": 6, "quads": 3, "dropped_births": 2}
+
+
+def searches_a_cross_among_too_many(hub: Machine, _: Recording) -> dict[str, int]:
+    """Sixteen traces each within 3 mm, and a track near to all: 17^4 combinations, as good as each other."""
+    hear(hub, listed(hub), 1, delay_s=CLOSE[-1:])
+    hear(hub, listed(hub), 2, delay_s=tuple(np.linspace(1.9999e-8, 2e-8, 16)))
+    return {"dropped_combinations": SOME}
+
+
+OF_A_HUB_IN_SPACE: dict[str, Provocation] = {
+    **OF_ANY_HUB,
+    **dict.fromkeys(("couples", "quads"), pairs_both_axes),
+    "clipped": must_bend_paths,
+    "unlocated": is_too_far_to_tell,
+    "outside_area": locates_beyond_the_box,
+    "dropped_births": has_room_for_one_in_space,
+    "dropped_points": pairs_everything,
+    "dropped_combinations": searches_a_cross_among_too_many,
+}
+
+NODE, HUB, NODE_BEHIND_A_WALL, HUB_BEHIND_A_WALL, HUB_IN_SPACE = range(5)
 ROWS = {
     NODE: OF_A_NODE | OF_THE_LINK,
     HUB: OF_A_HUB | OF_THE_LINK,
     NODE_BEHIND_A_WALL: OF_A_NODE_BEHIND_A_WALL | OF_THE_LINK,
     HUB_BEHIND_A_WALL: OF_A_HUB_BEHIND_A_WALL | OF_THE_LINK,
+    HUB_IN_SPACE: OF_A_HUB_IN_SPACE | OF_THE_LINK,
 }
 VALUES = [(kind, name) for kind, names in codec.HEALTH_VALUES.items() for name in names]
 
@@ -522,6 +578,10 @@ def opened(kind: int, target: str, walk: Recording) -> Machine:
     if kind == HUB_BEHIND_A_WALL:
         hub = Machine(open_board(target, "through_wall_hub", "hub", HUB_ID), HUB_ID)
         hub.configure(before_a_wall(-0.4, 0.4))
+        return hub
+    if kind == HUB_IN_SPACE:
+        hub = Machine(open_board(target, "through_wall_3d_hub", "hub", HUB_ID), HUB_ID)
+        hub.configure(hub_config(example_site("stairs")))
         return hub
     if kind == HUB:
         hub = Machine(open_board(target, "sensor_radar_hub", "hub", HUB_ID), HUB_ID)
@@ -549,5 +609,5 @@ def test_every_value_moves_by_what_was_done(
         for key, count in expected.items():
             assert (said[key] > 0) if count == SOME else (said[key] == count), key
         trouble = {key: said[key] for key in expected if key in OF_TROUBLE}
-        injected("hub" if kind in (HUB, HUB_BEHIND_A_WALL) else "rx1", **trouble)
+        injected("hub" if kind in (HUB, HUB_BEHIND_A_WALL, HUB_IN_SPACE) else "rx1", **trouble)
         assert name in expected

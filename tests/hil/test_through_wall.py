@@ -62,7 +62,7 @@ def here(receivers: tuple[NodeRecording, ...]) -> Said:
 def in_this_process(role: str, receiver: NodeRecording | None, config: Any) -> Machine:
     machine = _core.ThroughWallHub() if receiver is None else _core.ThroughWallNode()
     assert machine.configure(config) == _core.Status.ok
-    return InProcessHub(machine) if receiver is None else InProcessNode(receiver.node_id, machine)
+    return InProcessHub(machine, 2) if receiver is None else InProcessNode(receiver.node_id, machine)
 
 
 def on_boards(open_board: BoardOpener) -> Configure:

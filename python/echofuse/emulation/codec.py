@@ -120,6 +120,21 @@ HEALTH_VALUES: dict[int, tuple[str, ...]] = {
         "ticks_max",
         *(f"link_{name}" for name in _LINK_COUNTERS),
     ),
+    4: (
+        *_REPORT_COUNTERS,
+        "couples",
+        "quads",
+        "clipped",
+        "unlocated",
+        "outside_area",
+        "dropped_points",
+        "dropped_births",
+        "dropped_combinations",
+        "clock_faults",
+        "undecodable",
+        "ticks_max",
+        *(f"link_{name}" for name in _LINK_COUNTERS),
+    ),
 }
 
 

@@ -183,7 +183,7 @@ TEST_CASE("NodeHealth is PyCyphal's bytes; a kind that does not exist is refused
   for (std::size_t i = 0; i < health.values.size(); ++i) CHECK(health.values[i] == 255 * i);
   CHECK(payload_of(health) == vector.payload);
   Bytes wrong = vector.payload;
-  wrong[0] = 4;
+  wrong[0] = 5;
   CHECK(decode(span_of(wrong), health) == Status::kInvalidInput);
   CHECK(health.values.empty());
 }

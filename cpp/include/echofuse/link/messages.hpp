@@ -50,6 +50,7 @@ enum class MachineKind : std::uint8_t {
   kSensorRadarHub = 1,
   kThroughWallNode = 2,
   kThroughWallHub = 3,
+  kThroughWall3dHub = 4,
 };
 
 /// What a machine has counted since its start; the order of a kind's values stands in docs/link_protocol.md.

@@ -199,7 +199,7 @@ Status decode(Span<const std::uint8_t> payload, NodeHealth& health) {
   std::size_t size = payload.size();
   if (echofuse_NodeHealth_1_0_deserialize_(&wire, payload.data(), &size) < 0) return Status::kInvalidInput;
   if (!holds(payload, 2, wire.values.count, 4)) return Status::kInvalidInput;
-  if (wire.kind > static_cast<std::uint8_t>(MachineKind::kThroughWallHub)) return Status::kInvalidInput;
+  if (wire.kind > static_cast<std::uint8_t>(MachineKind::kThroughWall3dHub)) return Status::kInvalidInput;
   health.kind = static_cast<MachineKind>(wire.kind);
   for (std::size_t i = 0; i < wire.values.count; ++i)
     (void)health.values.try_push_back(wire.values.elements[i]);

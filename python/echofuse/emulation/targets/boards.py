@@ -12,13 +12,17 @@ from echofuse.errors import TargetError, problem
 AnyBoard = Board | PortBoard
 FIRMWARE_TARGETS = ("process", "cortex-m7")
 _SUFFIX = {"process": "", "cortex-m7": ".elf"}
-#: By a site's pipeline: what the names of its images, and what its boards call themselves, begin with.
-FAMILIES = {"sensor_radar": "sensor_radar", "through_wall_2d": "through_wall"}
+#: By a site's pipeline and a role: what an image's name, and what its boards call themselves, begin with.
+FAMILIES = {
+    "sensor_radar": {"node": "sensor_radar", "hub": "sensor_radar"},
+    "through_wall_2d": {"node": "through_wall", "hub": "through_wall"},
+    "through_wall_3d": {"node": "through_wall", "hub": "through_wall_3d"},
+}
 
 
 def image_name(pipeline: str, role: str) -> str:
     """Return the name of the image of a pipeline and a role, "node" or "hub"."""
-    return f"{FAMILIES[pipeline]}_{role}"
+    return f"{FAMILIES[pipeline][role]}_{role}"
 
 
 def firmware_image(target: str, image: str) -> Path:
@@ -44,7 +48,7 @@ class BoardOpener:
         self._taken: dict[int, PortBoard] = {}
         try:
             for address in target.split(",") if is_port(target) else ():
-                board = PortBoard(address, f"echofuse.{FAMILIES[pipeline]}.node")
+                board = PortBoard(address, f"echofuse.{FAMILIES[pipeline]['node']}.node")
                 other = self._waiting.setdefault(board.node_id, board)
                 if other is not board:
                     board.close()
