@@ -12,6 +12,8 @@ import pytest
 from echofuse.cli import main
 from echofuse.conformance.choices import (
     NODE_CHOICES,
+    STAIRS_NODE_CHOICES,
+    THROUGH_WALL_3D_HUB_CHOICES,
     THROUGH_WALL_HUB_CHOICES,
     THROUGH_WALL_NODE_CHOICES,
     Choice,
@@ -22,7 +24,10 @@ from echofuse.conformance.hub_inputs import simulated_hub_inputs
 from echofuse.conformance.hub_taps import conform_hub
 from echofuse.conformance.inputs import simulated_inputs
 from echofuse.conformance.node_taps import conform_node
-from echofuse.conformance.through_wall_hub_inputs import simulated_through_wall_reports
+from echofuse.conformance.through_wall_hub_inputs import (
+    simulated_climb_reports,
+    simulated_through_wall_reports,
+)
 from echofuse.conformance.through_wall_hub_taps import conform_through_wall_hub
 from echofuse.conformance.through_wall_inputs import simulated_responses
 from echofuse.conformance.through_wall_taps import conform_through_wall_node
@@ -53,6 +58,8 @@ def test_one_board_takes_one_choice_after_the_other(target: FirmwareConformanceT
         conform_through_wall_node(board, choice, target, list(heard))
     for choice in THROUGH_WALL_HUB_CHOICES[:4]:
         conform_through_wall_hub(board, choice, target, list(simulated_through_wall_reports(2)))
+    for choice in THROUGH_WALL_3D_HUB_CHOICES[:4]:
+        conform_through_wall_hub(board, choice, target, list(simulated_climb_reports(2)))
     assert [row.failures for row in board.rows() if row.failures] == []
 
 
@@ -129,8 +136,30 @@ def test_a_hub_behind_a_wall_that_is_configured_otherwise_fails_there(
     assert tap in [row.tap for row in failed(board)]
 
 
+@pytest.mark.parametrize(
+    ("register", "value", "tap"),
+    [
+        ("taylor_3d.wall.thickness_m", 0.25, "points"),
+        ("path_tracker.cut_off", 1.6, "tracks"),
+        ("nodes.3.rx.z_m", 0.3905, "points"),
+    ],
+)
+def test_a_hub_in_space_that_is_configured_otherwise_fails_there(
+    register: str, value: object, tap: str
+) -> None:
+    board = Scoreboard()
+    with closing(OtherwiseConfigured("hub", register, value)) as target:
+        conform_through_wall_hub(board, DEFAULT, target, list(simulated_climb_reports(2)))
+    assert tap in [row.tap for row in failed(board)]
+
+
+STAIRS_ROWS = 10 * len(STAIRS_NODE_CHOICES) + 4 * len(THROUGH_WALL_3D_HUB_CHOICES)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("case", "rows"), [("sensor-radar", 436), ("through-wall", 208)])
+@pytest.mark.parametrize(
+    ("case", "rows"), [("sensor-radar", 436), ("through-wall", 208), ("stairs", STAIRS_ROWS)]
+)
 @pytest.mark.parametrize("name", ["process", "cortex-m7"])
 def test_every_tap_of_every_choice_agrees(name: str, case: str, rows: int, tmp_path: Path) -> None:
     assert main(["conform", case, "--target", name, "--seeds", "2", "--out", str(tmp_path)]) == 0

@@ -5,7 +5,7 @@ from pathlib import Path
 
 __all__ = ["CASES", "conform"]
 
-CASES = ("sensor-radar", "through-wall")
+CASES = ("sensor-radar", "through-wall", "stairs")
 Progress = Callable[[Iterator[None], str, int], Iterator[None]]
 
 

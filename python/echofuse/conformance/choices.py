@@ -1,7 +1,7 @@
 """What is conformed: each choice of each stage, one at a time from the default, and some together."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 Settings = Mapping[str, Any]  # "stage.field" or "field" -> value, a choice as its word
@@ -138,6 +138,16 @@ THROUGH_WALL_NODE_CHOICES: tuple[Choice, ...] = (
     ),
 )
 
+STAIRS_NODE_CHOICES: tuple[Choice, ...] = tuple(
+    replace(choice, long_sequence=True)
+    for choice in (
+        Choice(name="default"),
+        *_one("leading_edge.rule", "contrast", "fraction"),
+        *_one("clutter.method", "frame_difference"),
+        *_one("target_traces.density_correction", False),
+    )
+)
+
 PAIR_FIRST: Settings = {"track_aided": False}
 
 THROUGH_WALL_HUB_CHOICES: tuple[Choice, ...] = (
@@ -157,6 +167,34 @@ THROUGH_WALL_HUB_CHOICES: tuple[Choice, ...] = (
     Choice(
         name="track_aided=False, nothing completed",
         settings={**PAIR_FIRST, "trace_pairing.completion_limit": 0},
+    ),
+)
+
+START_ALONE: Settings = {"taylor_3d.max_iterations": 0}
+
+# Not trace_pairing.closing=printed, whose couples all lie along the antennas: a cross locates none of them.
+THROUGH_WALL_3D_HUB_CHOICES: tuple[Choice, ...] = (
+    Choice(name="default"),
+    *_one("taylor_3d.start", "approximate"),
+    *_one("taylor_3d.max_iterations", 0, 20),
+    Choice(name="A-3D-2D alone", settings={**START_ALONE, "taylor_3d.start": "approximate"}),
+    *_one("taylor_3d.wall.compensation", "none", "first_kind", "second_kind"),
+    *_one("range_difference_m", 0.1),
+    *_one("trace_pairing.rule", "all_pairs"),
+    *_one("path_tracker.body_half_height_m", 0.0, 0.8),
+    *_one("path_tracker.turn_density_m2ps3", 0.0, 4.0),
+    *_one("path_tracker.path_std_growth", 0.0, 0.2),
+    *_one("path_tracker.lone_gate", 0.0),
+    Choice(name="track_aided=False", settings=PAIR_FIRST),
+    Choice(name="track_aided=False, all pairs", settings={**PAIR_FIRST, "trace_pairing.rule": "all_pairs"}),
+    Choice(
+        name="track_aided=False, nothing completed",
+        settings={**PAIR_FIRST, "trace_pairing.completion_limit": 0},
+    ),
+    Choice(name="track_aided=False, 3D-2D alone", settings={**PAIR_FIRST, **START_ALONE}),
+    Choice(
+        name="track_aided=False, A-3D-2D alone",
+        settings={**PAIR_FIRST, **START_ALONE, "taylor_3d.start": "approximate"},
     ),
 )
 

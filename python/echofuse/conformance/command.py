@@ -39,9 +39,13 @@ def conform_cases(
         if "sensor-radar" in cases:
             plan = sensor_radar.Plan(seeds=seeds, recording=walk)
             _work(sensor_radar.steps(opened, plan, scores), plan.steps(), progress)
-        if "through-wall" in cases:
-            behind_wall = through_wall.ThroughWallPlan(seeds=seeds)
-            _work(through_wall.steps(opened, behind_wall, scores), behind_wall.steps(), progress)
+        behind_wall = {
+            "through-wall": through_wall.ThroughWallPlan(seeds=seeds),
+            "stairs": through_wall.stairs_plan(seeds),
+        }
+        for case, behind in behind_wall.items():
+            if case in cases:
+                _work(through_wall.steps(opened, behind, scores), behind.steps(), progress)
     took_s = time.monotonic() - began_s
     print(format_scores(scores.boards))
     print()

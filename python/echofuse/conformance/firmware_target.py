@@ -46,6 +46,10 @@ class FirmwareConformanceTarget:
         """See `ConformanceTarget`."""
         return FirmwareHub(self, self._machine("through_wall_2d", "hub", config))
 
+    def through_wall_3d_hub(self, config: "_core.ThroughWall3dHubConfig") -> HubTarget:
+        """See `ConformanceTarget`."""
+        return FirmwareHub(self, self._machine("through_wall_3d", "hub", config))
+
     def give_back(self, machine: "FirmwareUnderTest") -> None:
         """Take a machine that has answered its input."""
         self._free[machine.pipeline, machine.role].append(machine)

@@ -152,7 +152,8 @@ class HubReference:
         return step._replace(margin=step.margin / RANGE_MARGIN)
 
 
-def covariances(tracks: Sequence[Track | RangeTrack | PathTrack]) -> Array:
-    """Position covariances (n, 3): xx, xy, yy [m^2]."""
-    entries = [track.filter.covariance[[0, 0, 2], [0, 2, 2]] for track in tracks]
-    return np.array(entries, np.float64).reshape(-1, 3)
+def covariances(tracks: Sequence[Track | RangeTrack | PathTrack], dimension: int = 2) -> Array:
+    """Position covariances (n, 3): xx, xy, yy [m^2]; in space (n, 6): xx, xy, xz, yy, yz, zz."""
+    upper = np.triu_indices(dimension)
+    entries = [track.filter.position_covariance[upper] for track in tracks]
+    return np.array(entries, np.float64).reshape(-1, len(upper[0]))

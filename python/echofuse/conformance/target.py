@@ -87,6 +87,9 @@ class ConformanceTarget(Protocol):
     def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
         """Return a hub of receivers configured and forgetful."""
 
+    def through_wall_3d_hub(self, config: "_core.ThroughWall3dHubConfig") -> HubTarget:
+        """Return a hub of a cross of receivers configured and forgetful."""
+
     def close(self) -> None:
         """End all machines."""
 
@@ -163,6 +166,10 @@ class InProcessTarget:
     def through_wall_hub(self, config: "_core.ThroughWallHubConfig") -> HubTarget:
         """See `ConformanceTarget`."""
         return InProcessHub(_core.ThroughWallHub(), config)
+
+    def through_wall_3d_hub(self, config: "_core.ThroughWall3dHubConfig") -> HubTarget:
+        """See `ConformanceTarget`."""
+        return InProcessHub(_core.ThroughWall3dHub(), config)
 
     def close(self) -> None:
         """Nothing is held."""

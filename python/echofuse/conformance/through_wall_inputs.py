@@ -12,6 +12,7 @@ from echofuse.conformance.choices import Choice, configure
 from echofuse.simulation.stairs import stairs_climber, stairs_scene
 from echofuse.simulation.through_wall import ThroughWallSimulation
 from echofuse.simulation.through_wall_scene import case_study_walkers, through_wall_scene
+from echofuse.site import apply_settings, example_site
 
 KINDS = ("plain", "power-up", "saturated", "dead", "no cross-talk")  # of a seed, by turns
 SETTLED = 13  # responses until time zero and background are known, by default
@@ -38,7 +39,7 @@ class ThroughWallInput:
 def simulated_responses(seeds: int, *, long_sequence: bool = False) -> Iterator[ThroughWallInput]:
     """One receiver a seed, one to four people; every kind of trouble by turns.
 
-    long_sequence: one person on the stairs, 4095 samples, of which a configuration must keep fewer.
+    long_sequence: one person on the stairs, 4095 samples, as the stairs' site says how to process them.
     """
     scene = stairs_scene() if long_sequence else through_wall_scene()
     for seed in range(seeds):
@@ -58,14 +59,17 @@ def simulated_responses(seeds: int, *, long_sequence: bool = False) -> Iterator[
             wrong[:] = 0.0
         elif kind == "no cross-talk":
             wrong[1:] = np.random.default_rng(seed).normal(0.0, 8.0, wrong[1:].shape)
+        config = _core.ThroughWallNodeConfig(
+            node_id=node.node_id,
+            n_samples=scene.radar.n_samples,
+            sample_rate_hz=scene.radar.clock_hz,
+            baseline_m=node.baseline_m,
+            full_scale_count=full_scale,
+        )
+        if long_sequence:
+            apply_settings(config, example_site("stairs").settings)
         yield ThroughWallInput(
             where=f"seed {seed} ({kind}, {node.name}, responses from {first})",
-            base=_core.ThroughWallNodeConfig(
-                node_id=node.node_id,
-                n_samples=scene.radar.n_samples,
-                sample_rate_hz=scene.radar.clock_hz,
-                baseline_m=node.baseline_m,
-                full_scale_count=full_scale,
-            ),
+            base=config,
             responses=np.ascontiguousarray(responses, np.float32),
         )
