@@ -131,6 +131,8 @@ __all__: list[str] = [
     "TrackUpdate",
     "Tracker",
     "TransferKind",
+    "TurningFilter",
+    "TurningFilter3d",
     "Wall",
     "WallCompensation",
     "WallConfig",
@@ -540,6 +542,82 @@ class ConstantVelocityFilter3d:
     def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...
     @property
     def state(self) -> numpy.typing.NDArray[numpy.float32]: ...
+
+class TurningFilter:
+    """
+    ConstantVelocityFilter of one who walks straight, or turns.
+    """
+    def __init__(
+        self,
+        state: numpy.typing.NDArray[numpy.float32],
+        covariance: numpy.typing.NDArray[numpy.float32],
+        turns: bool,
+    ) -> None: ...
+    def hold(
+        self,
+        axis: typing.SupportsInt | typing.SupportsIndex,
+        low_m: typing.SupportsFloat | typing.SupportsIndex,
+        high_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def predict(
+        self,
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+        straight_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        turning_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        begin_probability: typing.SupportsFloat | typing.SupportsIndex,
+        end_probability: typing.SupportsFloat | typing.SupportsIndex,
+        velocity_decay: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    ) -> None: ...
+    def update_along(
+        self,
+        direction: numpy.typing.NDArray[numpy.float32],
+        innovation_m: typing.SupportsFloat | typing.SupportsIndex,
+        variance_m2: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def state(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def turning_probability(self) -> float: ...
+
+class TurningFilter3d:
+    """
+    ConstantVelocityFilter3d of one who walks straight, or turns.
+    """
+    def __init__(
+        self,
+        state: numpy.typing.NDArray[numpy.float32],
+        covariance: numpy.typing.NDArray[numpy.float32],
+        turns: bool,
+    ) -> None: ...
+    def hold(
+        self,
+        axis: typing.SupportsInt | typing.SupportsIndex,
+        low_m: typing.SupportsFloat | typing.SupportsIndex,
+        high_m: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def predict(
+        self,
+        dt_s: typing.SupportsFloat | typing.SupportsIndex,
+        straight_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        turning_density_m2ps3: typing.SupportsFloat | typing.SupportsIndex,
+        begin_probability: typing.SupportsFloat | typing.SupportsIndex,
+        end_probability: typing.SupportsFloat | typing.SupportsIndex,
+        velocity_decay: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    ) -> None: ...
+    def update_along(
+        self,
+        direction: numpy.typing.NDArray[numpy.float32],
+        innovation_m: typing.SupportsFloat | typing.SupportsIndex,
+        variance_m2: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def state(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    @property
+    def turning_probability(self) -> float: ...
 
 class PeakInitialisation:
     """
@@ -4458,6 +4536,9 @@ class PathTrackerConfig:
         merge_distance_m: float = 0.3,
         merge_speed_mps: float = 0.6,
         max_tracks: int = 10,
+        turn_density_m2ps3: float = 0.0,
+        turn_begin_probability: float = 0.005,
+        turn_end_probability: float = 0.05,
         path_std_growth: float = 0.0,
         body_half_height_m: float = 0.0,
     ) -> None: ...
@@ -4585,6 +4666,27 @@ class PathTrackerConfig:
         """
     @silent_velocity_time_s.setter
     def silent_velocity_time_s(self, value: float) -> None: ...
+    @property
+    def turn_begin_probability(self) -> float:
+        """
+        [1] that somebody begins to turn in one response, in (0, 1)
+        """
+    @turn_begin_probability.setter
+    def turn_begin_probability(self, value: float) -> None: ...
+    @property
+    def turn_density_m2ps3(self) -> float:
+        """
+        [m^2/s^3] velocity variance gained by one who turns, >= 0; 0: nobody does
+        """
+    @turn_density_m2ps3.setter
+    def turn_density_m2ps3(self, value: float) -> None: ...
+    @property
+    def turn_end_probability(self) -> float:
+        """
+        [1] that somebody who turns walks straight on in the next, in (0, 1)
+        """
+    @turn_end_probability.setter
+    def turn_end_probability(self, value: float) -> None: ...
     @property
     def velocity_std_mps(self) -> float:
         """
@@ -5368,6 +5470,6 @@ TAPS: dict = {
     41: ("points", 5),
     42: ("tracks", 9),
 }
-THROUGH_WALL_3D_HUB_BYTES: int = 36536
-THROUGH_WALL_HUB_BYTES: int = 24776
-THROUGH_WALL_NODE_BYTES: int = 49216
+THROUGH_WALL_3D_HUB_BYTES: int = 44808
+THROUGH_WALL_HUB_BYTES: int = 28816
+THROUGH_WALL_NODE_BYTES: int = 57936

@@ -14,7 +14,7 @@ from echofuse.constants import SPEED_OF_LIGHT_MPS
 from echofuse.display import setting
 from echofuse.display.health import health_lines
 from echofuse.display.progress import progress
-from echofuse.display.ways import WAYS, is_of_a_way, way_lines
+from echofuse.display.ways import is_of_a_way, way_lines
 from echofuse.errors import InputError, problem
 from echofuse.pipeline import check_positions, process_recording
 from echofuse.recording import Recording, read, write
@@ -51,7 +51,6 @@ SEED_COLUMNS = {
         "cuboid_fraction",
         "false_tracks_per_100_s",
         "position_error_bound_m",
-        *(f"{way}_{of}_rmse_m" for way in WAYS for of in ("points", "track")),
     ),
 }
 TRACK_STATES = ("unconfirmed", "confirmed", "silent")

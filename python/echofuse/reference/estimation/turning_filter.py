@@ -1,7 +1,8 @@
 """Two constant-velocity filters, of somebody who walks straight and of one who turns, as one.
 
 The interacting multiple model estimator of Blom & Bar-Shalom (IEEE Transactions on Automatic Control 33,
-1988; Bar-Shalom, Li & Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 11.6.6).
+1988; Bar-Shalom, Li & Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001,
+section 11.6.6).
 """
 
 from __future__ import annotations
