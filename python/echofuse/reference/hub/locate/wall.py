@@ -1,5 +1,6 @@
 """Delay of a wave through a wall: the trace corrections of the through-wall paper, section 2."""
 
+from math import sqrt
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -23,9 +24,9 @@ class Ray(NamedTuple):
 def sine_in_air(thickness_m: float, relative_permittivity: float, lateral_m: float, air_m: float) -> float:
     """Sine of the angle in air of the ray that obeys Snell's law, by bisection."""
     low, high = 0.0, 1.0
-    for _ in range(200):
+    for _ in range(60):  # as far as float64 tells sines apart
         p = 0.5 * (low + high)
-        reached = air_m * p / np.sqrt(1 - p**2) + thickness_m * p / np.sqrt(relative_permittivity - p**2)
+        reached = air_m * p / sqrt(1 - p**2) + thickness_m * p / sqrt(relative_permittivity - p**2)
         low, high = (p, high) if reached < lateral_m else (low, p)
     return low
 
