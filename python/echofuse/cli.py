@@ -10,7 +10,6 @@ from echofuse import __version__
 from echofuse.errors import InputError, TargetError
 
 CASES = ("sensor-radar", "through-wall", "stairs")
-CONFORMED = ("sensor-radar", "through-wall")
 TARGETS = ("inprocess", "process", "cortex-m7")
 TARGET = "TARGET"
 
@@ -65,7 +64,7 @@ def build_parser() -> argparse.ArgumentParser:
     import_.add_argument("--out", type=Path, required=True, help="the HDF5 file to write")
 
     conform = commands.add_parser("conform", help="compare a target with the NumPy reference, tap by tap")
-    conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CONFORMED)} (default: all)")
+    conform.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(CASES)} (default: all)")
     conform.add_argument(
         "--target", type=_target, metavar=TARGET, default="inprocess", help="what is compared"
     )

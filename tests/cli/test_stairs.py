@@ -100,15 +100,13 @@ def test_seeds_print_a_line_each_their_mean_and_the_table(capsys: pytest.Capture
     assert main(["run", "stairs", "--duration", "5", "--seeds", "0-1"]) == 0
     head, *lines = capsys.readouterr().out.splitlines()
     columns = head.split()
-    assert {"cuboid_fraction", "three_d_two_d_points_rmse_m", "tsm_from_approximate_track_rmse_m"} < set(
-        columns
-    )
+    assert {"rmse_m", "cuboid_fraction", "position_error_bound_m"} < set(columns)
     assert [line.split()[0] for line in lines[:4]] == ["0", "1", "mean", "KF"]
     seeds = [dict(zip(columns, line.split(), strict=True)) for line in lines[:3]]
-    which = "tsm_from_three_d_two_d_points_rmse_m"
-    values = [float(row[which]) for row in seeds]
+    values = [float(row["rmse_m"]) for row in seeds]
     assert values[2] == pytest.approx((values[0] + values[1]) / 2.0, abs=1e-4)
-    (line,) = [line for line in lines if line.startswith("TSM from 3D-2D ")]
+    assert [line for line in lines if line.startswith("TSM from 3D-2D ")]
+    (line,) = [line for line in lines if line.startswith("Path tracker ")]
     assert f"{values[2]:.3f}" in line
 
 

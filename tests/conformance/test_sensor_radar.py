@@ -264,5 +264,5 @@ def test_the_library_agrees_on_the_real_walk() -> None:
 def test_an_unknown_case_is_named() -> None:
     from echofuse.errors import InputError
 
-    with pytest.raises(InputError, match="stairs"):
-        conform(["stairs"])
+    with pytest.raises(InputError, match="breathing-1"):
+        conform(["breathing-1"])
